@@ -342,8 +342,8 @@ TEST_CASE("momentum conservation makes every cold beam unstable") {
             const double growth =
                 fastest_of_all_modes(electrons(drift, 0.0), {1.0, 0.0, order, false});
             INFO("drift ", drift, ", order ", order, ": ", growth);
-            CHECK(growth >= (order == 0 ? 0.42 : order == 1 ? 0.20 : 0.10));
-            CHECK(growth <= (order == 0 ? 0.50 : order == 1 ? 0.23 : 0.12));
+            CHECK(growth >= (order == 0 ? 0.35 : order == 1 ? 0.20 : 0.10));
+            CHECK(growth <= (order == 0 ? 0.51 : order == 1 ? 0.23 : 0.12));
         }
 }
 

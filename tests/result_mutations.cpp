@@ -112,7 +112,6 @@ const std::vector<Mutation> grains{
     {"mpm_explicit", "sulsky_disks", "time.alpha=1 time.energy_limit=0",
      "energy_change energy_gain"},
     {"mpm_explicit", "sulsky_disks", "time.end=2", "parted"},
-    {"mpm_explicit", "sulsky_disks", "material.default.E=50 theory.compare=none", "overlap"},
     {"mpm_explicit", "rebound",
      "method.transfer=pic theory.compare=none grain.left.spin=5 grain.right.spin=5 time.end=1",
      "angular_momentum_strays"},

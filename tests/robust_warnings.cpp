@@ -29,7 +29,8 @@ cic plasma_wave.toml species.electrons.drift_x=1
     warning: aliases drive waves of two or three cells through cold plasma that moves, growth = 0.2
     or so: take method.scheme = "energy", or give it a temperature
 cic plasma_wave.toml species.electrons.drift_x=0.2
-    growth = 0.2 or so: give it a temperature with a Debye length of a third of a cell or more
+    warning: aliases drive waves of two or three cells through cold plasma that moves, growth = 0.2
+    or so: give it a temperature with a Debye length of a third of a cell or more
 cic plasma_wave.toml species.electrons.drift_x=1 method.scheme=energy -> no warning
 cic plasma_wave.toml species.electrons.drift_x=1 time.end=60 -> no warning
 cic line method.scheme=energy species.electrons.drift_x=0.1

@@ -142,34 +142,45 @@ inline std::string likely_bouncing(const Case& parameters, const Theory& theory,
                     format(rate * rate / (bounce * bounce)), " of it");
 }
 
-/// Cold plasma that moves through its mesh as a whole: aliases of its waves resonate with each other. Where
-/// that comes out of round-off by the end, that, and what to change; else nothing.
+/// Cold plasma that moves through its mesh as a whole, along x or along z: aliases of its waves resonate with
+/// each other. Where that comes out of round-off by the end, that, and what to change; else nothing.
 /// note:   The rate is that of mesh_dispersion() at 3/8 (tsc 7/16) of a wavelength in a cell, which hardly
-///         depends on the drift from 0.05 to 5 omega_p dx, or on the step.
+///         depends on the drift from 0.05 to 5 omega_p dx, or on the step; ngp has 0.36 to 0.50.
 inline std::string likely_driven_by_mesh(const Case& parameters) {
-    double squares = 0, slowest = HUGE_VAL, fastest = -HUGE_VAL, heat = 0;
-    for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile()) continue;
-        squares += s.charge * s.charge * s.mean_density() / s.mass;
-        slowest = std::min(slowest, s.drift_x), fastest = std::max(fastest, s.drift_x);
-        heat = std::max({heat, s.temperature_x, s.tables.speed.given() ? 1.0 : 0.0});
-    }
-    const double omega_p = std::sqrt(squares), dx = parameters.grid.x.spacing(),
-                 rate = omega_p * (parameters.weighting == "ngp"   ? 0.46
-                                   : parameters.weighting == "cic" ? 0.2
-                                                                   : 0.1),
-                 drift = std::fabs(fastest);
-    if (parameters.conserving != "momentum" || heat > 0 || slowest != fastest ||
-        !(drift > 0.05 * omega_p * dx) || !(rate * parameters.end > 15) ||
-        parameters.gauss_sign < 0 || parameters.magnetized() || !parameters.grid.x.periodic)
+    const bool cic = parameters.weighting == "cic", tsc = parameters.weighting == "tsc";
+    double squares = 0;
+    for (const SpeciesCase& s : parameters.species)
+        if (s.mobile()) squares += s.charge * s.charge * s.mean_density() / s.mass;
+    const double omega_p = std::sqrt(squares), rate = (tsc ? 0.1 : cic ? 0.2 : 0.4) * omega_p;
+    const auto driven = [&](const common::Axis& axis, double SpeciesCase::*drift,
+                            double SpeciesCase::*temperature) -> std::string {
+        double slowest = HUGE_VAL, fastest = -HUGE_VAL;
+        bool warm = false;
+        for (const SpeciesCase& s : parameters.species) {
+            if (!s.mobile()) continue;
+            slowest = std::min(slowest, s.*drift), fastest = std::max(fastest, s.*drift);
+            warm = warm || s.*temperature > 0 || s.has_distribution();
+        }
+        const double u = std::fabs(fastest) / (omega_p * axis.spacing());
+        if (warm || slowest != fastest || !(u > 0.05) || !axis.periodic) return "";
+        const std::string energy =
+            sentence("take method.scheme = \"energy\"",
+                     cic || tsc ? "" : " and method.weighting = \"cic\"", ", or ");
+        return sentence(
+            "aliases drive waves of two or three cells through cold plasma that moves, "
+            "growth = ",
+            rate, " or so: ", u > cold_beam_threshold(tsc ? 2 : 1) ? energy : "",
+            "give it a temperature with a Debye length of a third of a cell or more, and "
+            "loading = \"quiet\"");
+    };
+    if (parameters.conserving != "momentum" || parameters.gauss_sign < 0 ||
+        parameters.magnetized() || !(omega_p > 0) || !(rate * parameters.end > 15))
         return "";
-    const bool fast =
-        drift > omega_p * dx * cold_beam_threshold(parameters.weighting == "tsc" ? 2 : 1);
-    return sentence(
-        "aliases drive waves of two or three cells through cold plasma that moves, "
-        "growth = ",
-        rate, " or so: ", fast ? "take method.scheme = \"energy\", or " : "",
-        "give it a temperature with a Debye length of a third of a cell or more");
+    const std::string along_x =
+        driven(parameters.grid.x, &SpeciesCase::drift_x, &SpeciesCase::temperature_x);
+    return !along_x.empty() || parameters.dimensions == 1
+               ? along_x
+               : driven(parameters.grid.z, &SpeciesCase::drift_z, &SpeciesCase::temperature_z);
 }
 
 /// What a wave that is not as in theory is most likely due to, and what to change.
@@ -189,6 +200,8 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
     const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
                                                       : parameters.frequency_tolerance,
                  theta = std::max(k_dx, k_dz), slower = 2 - std::cos(k_dx / 2) - std::cos(k_dz / 2);
+    const std::string driven = likely_driven_by_mesh(parameters),
+                      also = driven.empty() ? "" : "; and " + driven;
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
@@ -196,8 +209,6 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         "or take loading = \"quiet\"");
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) return bouncing;
-    if (const std::string driven = likely_driven_by_mesh(parameters); !driven.empty())
-        return driven;
     if (parameters.model != "mesh" && (theta > 0.5 || slower > tolerance))
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
                         ", and the mesh changes the wave by 1 - cos(k dx/2)",
@@ -206,10 +217,11 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         k_dx > 0 && k_dz > 0 ? "grid.cells_x and cells_z"
                         : k_dx > k_dz        ? "grid.cells_x"
                                              : "grid.cells_z",
-                        exact);
+                        exact, also);
     if (parameters.model != "mesh" && step > 0.3)
         return sentence("|omega| dt is ", step,
-                        ", and the leapfrog changes the wave: lower time.dt", exact);
+                        ", and the leapfrog changes the wave: lower time.dt", exact, also);
+    if (!driven.empty()) return driven;
     if (theory.hidden != 0.0)
         return sentence("another wave of this mode, omega = ", theory.hidden.real(),
                         ", growth = ", theory.hidden.imag(),

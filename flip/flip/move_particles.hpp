@@ -158,7 +158,7 @@ RowMoved move_row(const Problem& problem, const WeightScale& scale, const Mesh& 
 ///   v_p += sum_g S (v_g^L - v_g)                                                  [FLIP-6]
 ///   x_p += dt sum_g S v_g^L; with an implicit pressure v_g^theta                  [FLIP-7]
 ///          on conservative paths with what that lacks of the divergence of the cell
-///   e_p += sum_c R (de_c + e_p relative_de_c) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
+///   e_p += sum_c R (de_c[0] + e_p de_c[1]) + sum_g S dissipated_g - |sum_g S dv_g|^2/2
 ///   and what another transfer than flip makes of v_p: apply_transfer(); where the fluid turns about
 ///   the axis, what the move leaves of the energy of that: take_swirl()
 /// in:     nodes.increment, dissipated, filtered; cells.de

@@ -68,7 +68,8 @@ class Recorder {
         row.add("contacts", "1", contacts);
         row.add("contact_force", "force", impulse / scales_.dt);
         const Mesh mesh = parameters_.problem.mesh();
-        if (all.grains.size() > 1) row.add("overlap", "h", deepest_overlap(all, mesh) / mesh.h);
+        if (planned_.scheme.implicit && all.grains.size() > 1)
+            row.add("overlap", "h", deepest_overlap(all, mesh) / mesh.h);
         for (const std::size_t g : tracked_) {
             const std::string& name = all.grains[g].name;
             if (all.grains[g].rigid) {

@@ -1,4 +1,6 @@
-// Whether the grains of a run stay out of each other.
+// Whether the grains of an implicit run stay out of each other: its steps may be longer than nodes see
+// ahead. Explicit steps are not. There the noise of the nodes also stretches single parts of an outline,
+// which sums over nodes do not show, and a depth of such parts is none of the grain.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +22,6 @@ inline std::string overlap_hint(const FinishedRun& run, double overlap, double t
     const std::string cure =
         std::string("lower time.") + (w.dt > 0 ? "dt" : "alpha") + " to " + shorter;
     const std::string deepest = ", deepest at t = " + format(time);
-    if (!run.planned.scheme.implicit)
-        return "grains burst into each other, or are too soft for what presses them" + deepest +
-               ": " + (w.alpha > 0.25 ? cure + ", or " : "") + "take a stiffer material";
     std::string hint =
         "grains that come nearer by a good part of a cell in a step are in each other before a "
         "node sees it, and stay so" +
@@ -43,7 +42,7 @@ inline std::string overlap_hint(const FinishedRun& run, double overlap, double t
 /// plate of a pack did 0.98, 0.79 and 0.70 of its work at 0.27, 0.34 and 0.60. Half a cell is as far as
 /// nodes on either side of a surface still see both bodies.
 inline void judge_overlap(const FinishedRun& run, common::Summary& summary) {
-    if (run.all.grains.size() < 2) return;
+    if (!run.planned.scheme.implicit || run.all.grains.size() < 2) return;
     const std::vector<double> overlap = run.history.column("overlap");
     const auto most = std::max_element(overlap.begin(), overlap.end());
     summary.hint(overlap_hint(run, *most, run.history.column("time")[most - overlap.begin()]));
