@@ -313,8 +313,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
         seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
     }
-    if (const std::string told = other_wave(parameters, theory, seen); !grows && !told.empty())
-        summary.hint(told);
+    const std::string told = grows ? "" : other_wave(parameters, theory, seen);
+    if (!told.empty()) summary.hint(told);
     const double level = onset_field(parameters, theory), folds = growth * (seen.end - seen.begin);
     double early = noise;
     for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
