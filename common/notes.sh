@@ -58,7 +58,7 @@ function print_region(path, region,    line, inside, seen, n, i, indent, least, 
         } else if (inside && line !~ /^ *clock\.lap\(/) {  # the clock of a bench is no part of the method
             lines[++n] = line
             match(line, /^ */)
-            if (line ~ /[^ \t]/ && RLENGTH < least) least = RLENGTH
+            if (line ~ /[^ \t]/ && line !~ /^#pragma/ && RLENGTH < least) least = RLENGTH
         }
     }
     close(path)
@@ -66,7 +66,7 @@ function print_region(path, region,    line, inside, seen, n, i, indent, least, 
     if (!seen) fail("no region // [" region "] in " path)
     if (inside) fail("region // [" region "] has no end // [/" region "] in " path)
     print "```" language(path)
-    for (i = 1; i <= n; i++) print substr(lines[i], least + 1)
+    for (i = 1; i <= n; i++) print lines[i] ~ /^#pragma/ ? lines[i] : substr(lines[i], least + 1)
     print "```"
 }
 

@@ -18,7 +18,7 @@ namespace mpm {
 /// Up to ParticleBatch::size particles of one tile that are worked on together, with their velocity
 /// gradients times dt.
 struct ParticleBatch {
-    static constexpr long size = 128;  // at most Places::size
+    static constexpr long size = 128;
     int grain = 0;
     std::size_t tile = 0;
     long begin = 0, count = 0;
@@ -60,6 +60,7 @@ void velocity_gradient(const Shape& shape, const Particles& particles, const Gra
     const NodeMotion* motion = nodes.motion.data();
     const double *x_p = particles.x_p.data() + batch.begin,
                  *y_p = particles.y_p.data() + batch.begin;
+    static_assert(ParticleBatch::size <= Places<Shape>::size);
     Places<Shape> places;
     places.find(shape, at, x_p, y_p, batch.count);
     for (long k = 0; k < batch.count; ++k) {

@@ -33,6 +33,13 @@ cic plasma_wave.toml species.electrons.drift_x=0.2
     or so: give it a temperature with a Debye length of a third of a cell or more
 cic plasma_wave.toml species.electrons.drift_x=1 method.scheme=energy -> no warning
 cic plasma_wave.toml species.electrons.drift_x=1 time.end=60 -> no warning
+# Warm by a formula; without the scheme that is the cure; along z.
+cic plasma_wave.toml species.electrons.drift_x=1 species.electrons.distribution_x='exp(-v^2/2)' \
+    species.electrons.distribution_max=6 theory.model=plasma species.electrons.loading=quiet \
+    -> no warning
+cic plasma_wave.toml species.electrons.drift_x=1 method.weighting=ngp
+    warning: aliases drive waves of two or three cells through cold plasma that moves, growth = 0.4
+    or so: take method.scheme = "energy" and method.weighting = "cic", or give it
 cic line method.scheme=energy species.electrons.drift_x=0.1
     warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
     energy-conserving mesh stops it; refine the mesh

@@ -37,7 +37,7 @@ inline std::string overlap_hint(const FinishedRun& run, double overlap, double t
 }
 
 /// Judges how deep any two grains have been in each other, in cells, in all rows of the history
-/// (output/overlap.hpp). Of sound runs the largest were 0.26 (all cases, at their steps), 0.37 (alpha = 4 to
+/// (output/overlap.hpp). Of sound runs the largest were 0.24 (all cases, at their steps), 0.37 (alpha = 4 to
 /// 16); a disk of 4 cells under a plate was 0.31 deep at alpha = 12, 0.57 at 16 and 1.96 at 24, and the
 /// plate of a pack did 0.98, 0.79 and 0.70 of its work at 0.27, 0.34 and 0.60. Half a cell is as far as
 /// nodes on either side of a surface still see both bodies.
