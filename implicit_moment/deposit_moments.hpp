@@ -27,9 +27,9 @@
 #include <iterator>
 #include <type_traits>
 
-#include "implicit_moment/exchange_rows.hpp"
+#include "implicit_moment/field/quadratic_weights.hpp"
 #include "implicit_moment/moments.hpp"
-#include "implicit_moment/quadratic_weights.hpp"
+#include "implicit_moment/ranks/exchange_rows.hpp"
 #include "implicit_moment/rotate_particles.hpp"
 
 namespace implicit_moment {

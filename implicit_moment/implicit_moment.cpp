@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/output/record.hpp"
+#include "implicit_moment/ranks/balance_rows.hpp"
 #include "implicit_moment/setup/check_case.hpp"
 #include "implicit_moment/setup/check_state.hpp"
 #include "implicit_moment/setup/describe_case.hpp"

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "implicit_moment/interleaved_field.hpp"
+#include "implicit_moment/field/interleaved_field.hpp"
 #include "implicit_moment/units.hpp"
 
 namespace implicit_moment {

@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "implicit_moment/field/vector_field.hpp"
 #include "implicit_moment/particles.hpp"
-#include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/grid.hpp"
-#include "implicit_moment/division.hpp"
+#include "implicit_moment/ranks/division.hpp"
 #include "implicit_moment/simd.hpp"
 
 namespace implicit_moment {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/smooth.hpp"
+#include "implicit_moment/field/smooth.hpp"
 #include "implicit_moment/units.hpp"
 
 namespace implicit_moment {

@@ -2,8 +2,8 @@
 // without E, and for relativistic particles what E will make of it.
 #pragma once
 
+#include "implicit_moment/field/quadratic_weights.hpp"
 #include "implicit_moment/mean_velocity.hpp"
-#include "implicit_moment/quadratic_weights.hpp"
 
 namespace implicit_moment::detail {
 

@@ -6,7 +6,7 @@
 
 #include "common/run/sentence.hpp"
 #include "implicit_moment/advance_field.hpp"
-#include "implicit_moment/enslave_particles.hpp"
+#include "implicit_moment/newton_krylov/enslave_particles.hpp"
 
 namespace implicit_moment {
 

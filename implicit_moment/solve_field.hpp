@@ -22,7 +22,7 @@
 #include <string>
 
 #include "common/run/sentence.hpp"
-#include "implicit_moment/precondition_field.hpp"
+#include "implicit_moment/field/precondition_field.hpp"
 
 namespace implicit_moment {
 

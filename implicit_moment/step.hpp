@@ -9,7 +9,7 @@
 #include "common/step_clock.hpp"
 #include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/deposit_moments.hpp"
-#include "implicit_moment/interleaved_field.hpp"
+#include "implicit_moment/field/interleaved_field.hpp"
 #include "implicit_moment/kick_and_fly.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/solve_enslaved_field.hpp"

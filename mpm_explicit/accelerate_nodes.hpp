@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "mpm_explicit/apply_loads.hpp"
 #include "mpm_explicit/budget.hpp"
+#include "mpm_explicit/grains/apply_loads.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm_explicit {

@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/contact.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 
 namespace mpm_explicit {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/grid/grain_nodes.hpp"
 
 namespace mpm {
 

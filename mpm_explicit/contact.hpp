@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "mpm_explicit/bond_load.hpp"
-#include "mpm_explicit/close_contact_node.hpp"
-#include "mpm_explicit/contact_list.hpp"
+#include "mpm_explicit/contact/bond_load.hpp"
+#include "mpm_explicit/contact/close_contact_node.hpp"
+#include "mpm_explicit/contact/contact_list.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm {

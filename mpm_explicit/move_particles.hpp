@@ -8,9 +8,9 @@
 #include <algorithm>
 
 #include "mpm_explicit/budget.hpp"
-#include "mpm_explicit/clamp_to_walls.hpp"
 #include "mpm_explicit/crossing.hpp"
-#include "mpm_explicit/move_tiles.hpp"
+#include "mpm_explicit/grid/clamp_to_walls.hpp"
+#include "mpm_explicit/grid/move_tiles.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm_explicit {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/budget.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 
 namespace mpm_explicit {
 

@@ -9,7 +9,7 @@
 #include "mpm_explicit/constrain_nodes.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_explicit/crossing.hpp"
-#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/grid/grain_nodes.hpp"
 #include "mpm_explicit/move_particles.hpp"
 #include "mpm_explicit/state.hpp"
 #include "mpm_explicit/strain.hpp"

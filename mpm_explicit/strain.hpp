@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "mpm_explicit/material_laws.hpp"
+#include "mpm_explicit/grains/material_laws.hpp"
 #include "mpm_explicit/transfer.hpp"
 
 namespace mpm {

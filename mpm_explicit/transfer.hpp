@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "mpm_explicit/grain_nodes.hpp"
-#include "mpm_explicit/places.hpp"
+#include "mpm_explicit/grid/grain_nodes.hpp"
+#include "mpm_explicit/grid/places.hpp"
 
 namespace mpm {
 

@@ -1,8 +1,8 @@
-// Loads of a step of the theta scheme: as in mpm_explicit/apply_loads.hpp, but the velocity of a
+// Loads of a step of the theta scheme: as in mpm_explicit/grains/apply_loads.hpp, but the velocity of a
 // grain under force control is found together with those of the nodes.
 #pragma once
 
-#include "mpm_explicit/apply_loads.hpp"
+#include "mpm_explicit/grains/apply_loads.hpp"
 
 namespace mpm_implicit {
 

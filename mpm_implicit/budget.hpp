@@ -17,10 +17,10 @@
 #include <span>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
 #include "mpm_explicit/contact.hpp"
-#include "mpm_explicit/grain_nodes.hpp"
-#include "mpm_explicit/material_laws.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
+#include "mpm_explicit/grains/material_laws.hpp"
+#include "mpm_explicit/grid/grain_nodes.hpp"
 
 namespace mpm_implicit {
 

@@ -8,9 +8,9 @@
 // gimp and quadratic in the cell next to slip and stick walls, where weight is that of m_i).
 #pragma once
 
-#include "mpm_explicit/apply_loads.hpp"
-#include "mpm_explicit/clamp_to_walls.hpp"
-#include "mpm_explicit/move_tiles.hpp"
+#include "mpm_explicit/grains/apply_loads.hpp"
+#include "mpm_explicit/grid/clamp_to_walls.hpp"
+#include "mpm_explicit/grid/move_tiles.hpp"
 #include "mpm_explicit/transfer.hpp"
 #include "mpm_implicit/budget.hpp"
 

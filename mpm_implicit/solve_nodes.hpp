@@ -15,11 +15,11 @@
 //                 or friction is not Coulomb's
 #pragma once
 
-#include "mpm_implicit/grain_factors.hpp"
-#include "mpm_implicit/mass_factors.hpp"
-#include "mpm_implicit/projected_cg.hpp"
+#include "mpm_implicit/solver/grain_factors.hpp"
+#include "mpm_implicit/solver/mass_factors.hpp"
+#include "mpm_implicit/solver/projected_cg.hpp"
+#include "mpm_implicit/solver/update_active_set.hpp"
 #include "mpm_implicit/theta_scheme.hpp"
-#include "mpm_implicit/update_active_set.hpp"
 #include "mpm_implicit/update_stress.hpp"
 
 namespace mpm_implicit {

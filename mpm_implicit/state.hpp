@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 #include "mpm_implicit/budget.hpp"
 
 namespace mpm_implicit {

@@ -15,13 +15,13 @@
 
 #include "common/random.hpp"
 #include "common/splines.hpp"
-#include "implicit_moment/division.hpp"
-#include "implicit_moment/quadratic_weights.hpp"
+#include "implicit_moment/field/quadratic_weights.hpp"
+#include "implicit_moment/field/smooth.hpp"
+#include "implicit_moment/field/waves.hpp"
+#include "implicit_moment/ranks/division.hpp"
 #include "implicit_moment/simd.hpp"
-#include "implicit_moment/smooth.hpp"
 #include "implicit_moment/sort_particles.hpp"
 #include "implicit_moment/theory/spline_average.hpp"
-#include "implicit_moment/waves.hpp"
 #include "tests/support/any_fields.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "mpm_explicit/material_laws.hpp"
+#include "mpm_explicit/grains/material_laws.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {

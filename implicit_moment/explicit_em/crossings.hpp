@@ -8,8 +8,8 @@
 #include <array>
 #include <vector>
 
-#include "implicit_moment/division.hpp"
 #include "implicit_moment/explicit_em/stencil.hpp"
+#include "implicit_moment/ranks/division.hpp"
 
 namespace implicit_moment {
 

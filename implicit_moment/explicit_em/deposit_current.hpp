@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "implicit_moment/explicit_em/stencil.hpp"
-#include "implicit_moment/vector_field.hpp"
+#include "implicit_moment/field/vector_field.hpp"
 
 namespace implicit_moment {
 

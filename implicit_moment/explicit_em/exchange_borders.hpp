@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "common/ranks.hpp"
-#include "implicit_moment/exchange_rows.hpp"
 #include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
+#include "implicit_moment/ranks/exchange_rows.hpp"
 
 namespace implicit_moment {
 

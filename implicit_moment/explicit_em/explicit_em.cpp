@@ -11,11 +11,11 @@
 #include <optional>
 
 #include "common/run/start.hpp"
-#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/explicit_em/setup/check_leapfrog.hpp"
 #include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
 #include "implicit_moment/explicit_em/step.hpp"
 #include "implicit_moment/output/record.hpp"
+#include "implicit_moment/ranks/balance_rows.hpp"
 #include "implicit_moment/setup/check_state.hpp"
 #include "implicit_moment/setup/describe_case.hpp"
 

@@ -19,7 +19,7 @@
 #include "implicit_moment/explicit_em/crossings.hpp"
 #include "implicit_moment/explicit_em/deposit_current.hpp"
 #include "implicit_moment/explicit_em/exchange_borders.hpp"
-#include "implicit_moment/smooth.hpp"
+#include "implicit_moment/field/smooth.hpp"
 
 namespace implicit_moment {
 

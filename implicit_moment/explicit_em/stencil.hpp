@@ -16,8 +16,8 @@
 
 #include <algorithm>
 
+#include "implicit_moment/field/quadratic_weights.hpp"
 #include "implicit_moment/particles.hpp"
-#include "implicit_moment/quadratic_weights.hpp"
 
 namespace implicit_moment {
 

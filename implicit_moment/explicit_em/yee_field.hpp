@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "implicit_moment/field/vector_field.hpp"
 #include "implicit_moment/units.hpp"
-#include "implicit_moment/vector_field.hpp"
 
 namespace implicit_moment {
 

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "common/ranks.hpp"
-#include "implicit_moment/balance_rows.hpp"
 #include "implicit_moment/deposit_moments.hpp"
+#include "implicit_moment/field/waves.hpp"
+#include "implicit_moment/ranks/balance_rows.hpp"
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/solve_field.hpp"
 #include "implicit_moment/sort_particles.hpp"
-#include "implicit_moment/waves.hpp"
 
 namespace implicit_moment {
 

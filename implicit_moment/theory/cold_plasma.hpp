@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "implicit_moment/apply_mass_matrix.hpp"
+#include "implicit_moment/field/apply_mass_matrix.hpp"
 #include "implicit_moment/theory/eigenvalues.hpp"
 #include "implicit_moment/theory/images_of_mode.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "implicit_moment/field/smooth.hpp"
 #include "implicit_moment/setup/case.hpp"
-#include "implicit_moment/smooth.hpp"
 
 namespace implicit_moment {
 

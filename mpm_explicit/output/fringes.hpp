@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "common/run/writers.hpp"
-#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/grid/mesh.hpp"
 #include "mpm_explicit/particles.hpp"
 #include "mpm_explicit/shapes.hpp"
 

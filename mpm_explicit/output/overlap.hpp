@@ -15,8 +15,8 @@
 #include <numbers>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
+#include "mpm_explicit/grid/mesh.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 #include "common/random.hpp"
 #include "common/run/history.hpp"
 #include "common/run/writers.hpp"
-#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 #include "mpm_explicit/output/fringes.hpp"
 #include "mpm_explicit/setup/case.hpp"
 #include "mpm_explicit/setup/plan_grains.hpp"

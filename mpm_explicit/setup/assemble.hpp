@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 #include "mpm_explicit/setup/plan_grains.hpp"
 
 namespace mpm {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/run/checkpoint.hpp"
-#include "mpm_explicit/assembly.hpp"
-#include "mpm_explicit/grain_nodes.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
+#include "mpm_explicit/grid/grain_nodes.hpp"
 #include "mpm_explicit/setup/grain_shapes.hpp"
 
 namespace mpm {

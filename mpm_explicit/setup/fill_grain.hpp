@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/grid/mesh.hpp"
 #include "mpm_explicit/setup/cut_outline.hpp"
 
 namespace mpm {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "mpm_explicit/grains.hpp"
-#include "mpm_explicit/material_laws.hpp"
+#include "mpm_explicit/grains/grains.hpp"
+#include "mpm_explicit/grains/material_laws.hpp"
 #include "mpm_explicit/setup/fill_grain.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 #include "mpm_explicit/setup/packs.hpp"

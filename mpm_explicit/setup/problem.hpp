@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "common/run/parameters.hpp"
-#include "mpm_explicit/apply_loads.hpp"
-#include "mpm_explicit/detect_contact.hpp"
-#include "mpm_explicit/materials.hpp"
-#include "mpm_explicit/mesh.hpp"
+#include "mpm_explicit/contact/detect_contact.hpp"
+#include "mpm_explicit/grains/apply_loads.hpp"
+#include "mpm_explicit/grains/materials.hpp"
+#include "mpm_explicit/grid/mesh.hpp"
 
 namespace mpm {
 

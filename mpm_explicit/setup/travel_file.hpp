@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mpm_explicit/grains.hpp"
+#include "mpm_explicit/grains/grains.hpp"
 #include "mpm_explicit/setup/pack_file.hpp"
 
 namespace mpm {

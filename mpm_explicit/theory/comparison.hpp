@@ -15,7 +15,7 @@
 
 #include "common/run/history.hpp"
 #include "common/run/summary.hpp"
-#include "mpm_explicit/assembly.hpp"
+#include "mpm_explicit/grains/assembly.hpp"
 #include "mpm_explicit/setup/plan_grains.hpp"
 #include "mpm_explicit/setup/scales.hpp"
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mpm_explicit/materials.hpp"
+#include "mpm_explicit/grains/materials.hpp"
 #include "mpm_explicit/particles.hpp"
 
 namespace mpm {

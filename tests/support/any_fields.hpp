@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "implicit_moment/vector_field.hpp"
+#include "implicit_moment/field/vector_field.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace facts {
