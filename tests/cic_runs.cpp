@@ -563,6 +563,9 @@ TEST_CASE("a mesh that brakes or heats a plasma in which nothing happens is a re
     says(braked, "the energy-conserving mesh brakes what moves through it");
     says(braked, "FAIL kinetic_over_initial_e");
     says(braked, "a random start has more noise than equilibrium");
+    // B along the drift changes none of this.
+    const std::string along = said(drifting, "method.scheme=energy plasma.B_x=1");
+    says(along, "FAIL momentum_change");
     const Run kept = facts::run_into("kept", "cic", drifting);
     CHECK(!kept.summary["results"].contains("momentum_change"));
     // Ions that the mesh heats, beside electrons that it resolves.

@@ -13,7 +13,9 @@ TEST_CASE("what may mislead in cic is a warning with the number and the limit" *
 cic line -> no warning
 cic line time.dt=1
     warning: omega_p dt = 1 is above 0.5: frequencies are 4.72 % too high; at 2 the leapfrog
-    blows up
+    blows up, with a temperature from 1.6 on
+cic line species.electrons.density='1+cos(2*pi*x/6)' time.dt=0.4
+    warning: omega_p dt = 0.5657 where the plasma is densest is above 0.5
 cic line species.electrons.temperature_x=0.01
     warning: the Debye length is 0.2667 cells, below 0.3183 for cic: the mesh will heat the
     plasma; refine it to cells of 0.3142
@@ -40,6 +42,17 @@ cic plasma_wave.toml species.electrons.drift_x=1 species.electrons.distribution_
 cic plasma_wave.toml species.electrons.drift_x=1 method.weighting=ngp
     warning: aliases drive waves of two or three cells through cold plasma that moves, growth = 0.4
     or so: take method.scheme = "energy" and method.weighting = "cic", or give it
+# Along B, slowly, and with ions that are warm or a little faster; not across B, nor with a beam.
+cic plasma_wave.toml species.electrons.drift_x=1 plasma.B_x=1
+    warning: aliases drive waves of two or three cells through cold plasma that moves
+cic plasma_wave.toml species.electrons.drift_x=1 plasma.B_y=1 theory.compare=none -> no warning
+cic plasma_wave.toml species.electrons.drift_x=0.03
+    warning: aliases drive waves of two or three cells through cold plasma that moves
+cic plasma_wave.toml species.electrons.drift_x=0.8 species.ions.motion=mobile \
+    species.ions.mass=1836 species.ions.loading=lattice species.ions.drift_x=0.801
+    warning: aliases drive waves of two or three cells through cold plasma that moves
+cic buneman.toml -> no warning
+cic cloud_collision.toml time.end=5400 -> no warning
 cic line method.scheme=energy species.electrons.drift_x=0.1
     warning: electrons: a cold beam at 0.2667 omega_p dx is below 0.2887, where the
     energy-conserving mesh stops it; refine the mesh
@@ -117,6 +130,9 @@ cic plane plasma.B_y=0.7 time.end=200
     warning: B_y turns forces of the momentum scheme, which on a mesh are not along k, into growth
 cic plane plasma.B_y=0.7 time.end=200 method.scheme=energy -> no warning
 cic plane plasma.B_z=0.7 time.end=200 -> no warning
+cic plane plasma.B_z=0.7 plasma.B_x=0.7 time.end=200
+    warning: B oblique to the mesh turns forces of the momentum scheme, which on a mesh are not
+    along k, into growth
 )");
 }
 

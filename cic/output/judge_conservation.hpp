@@ -13,14 +13,20 @@ namespace cic {
 
 /// The largest change of the momentum, of sum (2 K M)^1/2 of all species, K kinetic energy, M mass, at the
 /// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged
-/// only where it did not; the energy scheme where a species drifts.
+/// only where it did not; the energy scheme where a species drifts. Of a magnetized plasma the momentum along B.
 /// in:     least_energy, below which all energy is round-off
 inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
                            Summary& summary) {
-    if (parameters.has_walls() || parameters.magnetized()) return;
+    if (parameters.has_walls()) return;
+    // B in the plane turns all momentum but that along it.
+    const bool plane = parameters.dimensions == 2;
+    const MagneticField& B = parameters.B;
+    if (B.y != 0 || (!plane && B.z != 0)) return;
+    const auto along_B = [&](double x, double z) {
+        return parameters.magnetized() ? std::fabs(x * B.x + z * B.z) / B.size() : std::hypot(x, z);
+    };
     const auto kinetic = history.column("kinetic"), x = history.column("momentum_x"),
-               z = parameters.dimensions == 2 ? history.column("momentum_z")
-                                              : std::vector<double>(x.size(), 0.0);
+               z = plane ? history.column("momentum_z") : std::vector<double>(x.size(), 0.0);
     std::vector<double> scale(x.size(), 0.0);
     double drifting = 0;
     for (const SpeciesCase& s : parameters.species) {
@@ -29,11 +35,11 @@ inline void judge_momentum(const Case& parameters, double least_energy, const Hi
         const double mass = s.mass * s.mean_density() * filled_volume(parameters, s);
         for (std::size_t n = 0; n < own.size(); ++n)
             scale[n] += std::sqrt(2 * std::max(0.0, own[n]) * mass);
-        drifting += mass * std::hypot(s.drift_x, parameters.dimensions == 2 ? s.drift_z : 0.0);
+        drifting += mass * along_B(s.drift_x, plane ? s.drift_z : 0.0);
     }
     double change = 0;
     for (std::size_t n = 0; n < x.size(); ++n)
-        change = std::max(change, std::hypot(x[n] - x[0], z[n] - z[0]));
+        change = std::max(change, along_B(x[n] - x[0], z[n] - z[0]));
     const double most = std::ranges::max(scale);
     change /= scale.front() > 0.1 * most ? scale.front() : most;
     const bool energy = parameters.scheme().energy_conserving;
@@ -52,15 +58,21 @@ inline void judge_momentum(const Case& parameters, double least_energy, const Hi
 inline bool is_at_rest(const Case& parameters) {
     if (parameters.has_walls() || parameters.gauss_sign < 0) return false;
     const SpeciesCase* first = nullptr;
+    const MagneticField& B = parameters.B;
+    const auto drifts_across_B = [&](const SpeciesCase& s) {
+        return B.y * s.drift_z != B.z * s.drift_y || B.z * s.drift_x != B.x * s.drift_z ||
+               B.x * s.drift_y != B.y * s.drift_x;
+    };
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         if (!first) first = &s;
         const std::array<double, 3> T = s.temperatures(parameters.axis());
-        const bool isotropic = parameters.magnetized() ? T[0] == T[1] && T[0] == T[2]
-                                                       : parameters.dimensions == 1 || T[0] == T[2];
+        const bool isotropic = parameters.dimensions == 1 && !parameters.turns(0) ? true
+                               : parameters.magnetized() ? T[0] == T[1] && T[0] == T[2]
+                                                         : T[0] == T[2];
         if (s.profile != "uniform" || !s.density.is_number() || s.has_distribution() ||
             !isotropic || !perturbations_of(parameters, s).empty() || s.ripple != 0 ||
-            s.drift() != first->drift() || (parameters.magnetized() && !s.at_rest()))
+            s.drift() != first->drift() || drifts_across_B(s))
             return false;
     }
     return true;

@@ -37,7 +37,7 @@ struct PerturbationCase {
 struct Tables {
     Distribution x;               // of positions, and
     std::vector<Distribution> z;  // in two dimensions, for every piece of x
-    double mean_density = 0;
+    double mean_density = 0, largest_density = 0;
     std::array<Distribution, 3> v;  // of the velocities along x, y and z
     Distribution speed;             // of the one across an axis
 };
@@ -68,6 +68,10 @@ struct SpeciesCase {
     bool mobile() const { return motion == "mobile"; }
     double mean_density() const {
         return density.is_number() ? double(density) : tables.mean_density;
+    }
+    /// How many times the mean density the densest place has.
+    double peak() const {
+        return density.is_number() ? 1 : tables.largest_density / tables.mean_density;
     }
     std::array<double, 3> drift() const { return {drift_x, drift_y, drift_z}; }
     bool at_rest() const { return drift_x == 0 && drift_y == 0 && drift_z == 0; }
@@ -136,6 +140,8 @@ struct Case {
                 int(dimensions)};
     }
     bool magnetized() const { return B.size() > 0; }
+    /// Whether the magnetic field turns what moves along x, axis 0, or along z, axis 2.
+    bool turns(std::size_t axis) const { return B.y != 0 || (axis == 0 ? B.z : B.x) != 0; }
     /// Whether some species has its velocities by formula.
     bool has_distributions() const {
         return std::ranges::any_of(species, &SpeciesCase::has_distribution);

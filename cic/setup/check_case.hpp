@@ -103,11 +103,11 @@ inline void validate(Case& parameters) {
                    " times the length of the box in one step: lower time.dt below ",
                    length / speed);
     }
-    const double fastest = scales.omega_p * parameters.dt;
+    const double fastest = scales.largest_omega_p * parameters.dt;
     if (parameters.gauss_sign > 0 && fastest > 0)
-        refuse(fastest >= 2, "omega_p dt = ", fastest,
+        refuse(fastest >= 2, "omega_p dt = ", fastest, where_densest(scales),
                " is not below 2, where the leapfrog blows up: lower time.dt below ",
-               2 / scales.omega_p);
+               2 / scales.largest_omega_p);
     refuse(parameters.dimensions == 1 && parameters.mode_z != 0,
            "theory.mode_z needs grid.dimensions = 2");
     refuse(is_above_cut_off(parameters, parameters.mode_x, parameters.mode_z), "the followed ",

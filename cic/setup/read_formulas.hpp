@@ -29,7 +29,7 @@ inline void read_formulas(Case& parameters) {
             const auto density = [&](double x, double z) {
                 return s.density.at(x, z, std::hypot(x - s.center_x, z - s.center_z));
             };
-            double sum = 0;  // of all pieces
+            double sum = 0, most = 0;  // of all pieces
             const bool plane = parameters.dimensions == 2;
             const long pieces = std::max(plane ? 512L : 4096L, grid.x.cells),
                        rows = plane ? std::max(512L, grid.z.cells) : 1;
@@ -37,7 +37,7 @@ inline void read_formulas(Case& parameters) {
                 double column = 0;
                 const auto along_z = [&](double z) {
                     const double n = density(x, z);
-                    column += n;
+                    column += n, most = std::max(most, n);
                     return n;
                 };
                 if (plane)
@@ -49,6 +49,7 @@ inline void read_formulas(Case& parameters) {
             });
             refuse_nothing(s.tables.x, "density");
             s.tables.mean_density = sum / double(pieces * rows);
+            s.tables.largest_density = most;
         }
         const auto read = [&](common::Formula& f, const char* what, double low, bool speeds,
                               Distribution& table) {

@@ -17,6 +17,7 @@ struct SpeciesScales {
     std::string name;
     double omega_p = 0, thermal_speed = 0, drift = 0, Omega_c = 0;
     double debye_length = 0;  // of this species alone; 0 for a cold one
+    double peak = 1;          // the largest density over the mean
     long particles = 0;
 };
 
@@ -25,6 +26,7 @@ struct Scales {
     std::vector<SpeciesScales> species;
     double omega_p = 0;       // of all mobile species together
     double debye_length = 0;  // of all warm ones together; 0 when all are cold
+    double largest_omega_p = 0, least_debye_length = 0;  // the same where the plasma is densest
     long steps = 0, particles = 0;
     double most = 0;     // particles, with those that a source wall emits
     double bytes = 0;    // memory that the run will take, of a rank
@@ -44,7 +46,7 @@ inline double most_particles(const Case& parameters, const SpeciesCase& s) {
 /// The scales of a case whose mesh has its boundaries.
 inline Scales scales_of(const Case& parameters) {
     Scales s;
-    double inverse_debye2 = 0;
+    double inverse_debye2 = 0, largest_inverse = 0;
     long components = parameters.dimensions + (parameters.magnetized() ? 3 : parameters.dimensions);
     for (const SpeciesCase& k : parameters.species) {
         if (!k.mobile()) continue;
@@ -58,13 +60,22 @@ inline Scales scales_of(const Case& parameters) {
         scale.Omega_c = std::fabs(k.charge) * parameters.B.size() / k.mass;
         scale.debye_length = omega2 > 0 ? scale.thermal_speed / scale.omega_p : 0;
         scale.particles = particle_count(parameters, k);
-        if (scale.debye_length > 0) inverse_debye2 += 1 / std::pow(scale.debye_length, 2);
-        if (k.profile != "point") s.omega_p = std::hypot(s.omega_p, scale.omega_p);
+        scale.peak = k.peak();
+        if (scale.debye_length > 0) {
+            inverse_debye2 += 1 / std::pow(scale.debye_length, 2);
+            largest_inverse += scale.peak / std::pow(scale.debye_length, 2);
+        }
+        if (k.profile != "point") {
+            s.omega_p = std::hypot(s.omega_p, scale.omega_p);
+            s.largest_omega_p =
+                std::hypot(s.largest_omega_p, std::sqrt(scale.peak) * scale.omega_p);
+        }
         s.particles += scale.particles;
         s.most += most_particles(parameters, k);
         s.species.push_back(scale);
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
+    s.least_debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(largest_inverse) : 0;
     s.steps = std::lround(parameters.end / parameters.dt);
     // Species are sorted one after the other.
     long sorted = 0;
@@ -88,6 +99,11 @@ inline Scales scales_of(const Case& parameters) {
     s.of_mesh = double(s.steps) * 30 * double(parameters.grid.size()) / 80e6;
     s.seconds = s.of_mesh + double(s.steps) * s.most / 80e6;
     return s;
+}
+
+/// Of scales where the plasma is densest, that; nothing where it is uniform.
+inline std::string where_densest(const Scales& scales) {
+    return scales.largest_omega_p > 1.001 * scales.omega_p ? " where the plasma is densest" : "";
 }
 
 namespace detail {
@@ -137,7 +153,8 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
     const Grid& grid = parameters.grid;
     const bool plane = parameters.dimensions == 2;
     const double dx = plane ? std::max(grid.x.spacing(), grid.z.spacing()) : grid.x.spacing();
-    double omega2 = 0, Omega_y = 0;
+    double omega2 = 0, Omega_y = 0, Omega_oblique = 0;
+    const MagneticField& B = parameters.B;
     for (const SpeciesScales& s : scales.species) {
         const auto own = std::ranges::find(parameters.species, s.name, &SpeciesCase::name);
         // Who crosses a tenth of a cell in 1/omega_p does not see long what grows there; ions are slow.
@@ -145,12 +162,15 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
             s.thermal_speed + s.drift > 0.1 * s.omega_p * dx)
             continue;
         omega2 += s.omega_p * s.omega_p;
-        Omega_y = std::max(
-            Omega_y, s.Omega_c * std::fabs(parameters.B.y) / std::max(parameters.B.size(), 1e-300));
+        const double per_B = s.Omega_c / std::max(B.size(), 1e-300);
+        Omega_y = std::max(Omega_y, per_B * std::fabs(B.y));
+        Omega_oblique = std::max(Omega_oblique, per_B * std::min(std::fabs(B.x), std::fabs(B.z)));
     }
     const double omega_p = std::sqrt(omega2);
     // As measured; in one dimension by the matrix of the displacements of cells, (1/N)^1/2 of many.
-    const double at_walls = !parameters.has_walls() || parameters.magnetized() ? 0
+    const double at_walls = !(parameters.boundary_x == "wall" && !parameters.turns(0)) &&
+                                    !(parameters.boundary_z == "wall" && !parameters.turns(2))
+                                ? 0
                             : plane
                                 ? 0.5 * omega_p * parameters.end
                                 : std::sqrt(0.8 / double(grid.x.cells)) * omega_p * parameters.end;
@@ -158,11 +178,13 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
                  "a cold plasma that touches walls does not rest in the momentum scheme: the field "
                  "on the nodes of a wall drives it, and noise grows as exp(",
                  at_walls, ") by time.end: take method.scheme = \"energy\"");
-    const double in_field = plane && Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p
-                                ? 0.08 * omega_p * parameters.end
-                                : 0;
-    common::warn(warnings, in_field > 10,
-                 "B_y turns forces of the momentum scheme, which on a mesh are not along k, into "
+    const double in_field =
+        !plane                                               ? 0
+        : Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p ? 0.08 * omega_p * parameters.end
+        : B.y == 0 && Omega_oblique > 0.12 * omega_p          ? 0.06 * omega_p * parameters.end
+                                                             : 0;
+    common::warn(warnings, in_field > 10, B.y == 0 ? "B oblique to the mesh" : "B_y",
+                 " turns forces of the momentum scheme, which on a mesh are not along k, into "
                  "growth: waves of some cells in a cold plasma grow as up to exp(",
                  in_field, ") by time.end: take method.scheme = \"energy\"");
 }
@@ -177,17 +199,18 @@ inline void warn_of_heating(const Case& parameters, const Scales& scales, double
     const auto too_short = [&](double length) {
         return length > 0 && length < (1 - 1e-4) * least * dx;
     };
-    if (parameters.conserving != "momentum" || !too_short(scales.debye_length)) return;
+    if (parameters.conserving != "momentum" || !too_short(scales.least_debye_length)) return;
     std::string names;
-    double length = scales.debye_length, shortest = HUGE_VAL;
+    double length = scales.least_debye_length, shortest = HUGE_VAL;
     bool resolves_one = false;
     for (const SpeciesScales& s : scales.species) {
         if (s.debye_length == 0) continue;
-        if (!too_short(s.debye_length))
+        const double least_length = s.debye_length / std::sqrt(s.peak);
+        if (!too_short(least_length))
             resolves_one = true;
         else
             names += (names.empty() ? "" : " and ") + s.name,
-                shortest = std::min(shortest, s.debye_length);
+                shortest = std::min(shortest, least_length);
     }
     const bool some = resolves_one && !names.empty();
     if (some) length = shortest;
@@ -232,11 +255,11 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     const Grid& grid = parameters.grid;
     const double dx = parameters.dimensions == 2 ? std::max(grid.x.spacing(), grid.z.spacing())
                                                  : grid.x.spacing();
-    const double omega_dt = scales.omega_p * parameters.dt;
+    const double omega_dt = scales.largest_omega_p * parameters.dt;
     if (omega_dt > 0.5 && parameters.gauss_sign > 0)
-        warn("omega_p dt = ", omega_dt, " is above 0.5: frequencies are ",
+        warn("omega_p dt = ", omega_dt, where_densest(scales), " is above 0.5: frequencies are ",
              100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
-             " % too high; at 2 the leapfrog blows up");
+             " % too high; at 2 the leapfrog blows up, with a temperature from 1.6 on");
     detail::warn_of_heating(parameters, scales, dx, warnings);
     detail::warn_of_space_charge(parameters, warnings);
     if (const std::string driven = likely_driven_by_mesh(parameters); !driven.empty())
@@ -290,8 +313,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     bool followed = false;
     for (const SpeciesCase& s : parameters.species) {
         emission += s.emission;
-        followed = followed || (s.ripple != 0 && s.mode_x == parameters.mode_x &&
-                                s.mode_z == parameters.mode_z);
+        followed =
+            followed || (s.ripple != 0 && std::abs(s.mode_x) == std::abs(parameters.mode_x) &&
+                         s.mode_x * parameters.mode_z == s.mode_z * parameters.mode_x);
         for (const PerturbationCase& p : perturbations_of(parameters, s))
             followed = followed || p.is_of(parameters.mode_x, parameters.mode_z) ||
                        p.is_of(-parameters.mode_x, -parameters.mode_z);

@@ -413,12 +413,12 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         return cannot("the history has fewer than 8 rows");
     if (!(wanted.size > 0)) return cannot("theory has no root to look for");
 
-    // Choose the window.
     long block = 1;
     const Rows rows = window_of(times, z, search, wanted, block);
     const double dt = times[1] - times[0];
     // From there to its maximum growth would have taken less than the rest of the run.
-    const double left = times.back() - times[std::size_t(std::max(0L, rows.end - 1))];
+    const double ended = times[std::size_t(std::max(0L, rows.end - 1))],
+                 left = search.end < times.back() ? HUGE_VAL : times.back() - ended;
     result.over = wanted.growth * left > -1.5 * std::log(search.below_maximum);
     std::string cure = result.over ? "; growth is over then" : ": raise time.end";
     if (wanted.growth < 0 && left > 0) cure = "; " + search.faded;
@@ -426,7 +426,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +
                       " rows of the history are between the transient of the start and the end of "
                       "the linear phase" +
-                      (wanted.growth > 0 ? cure : std::string()));
+                      (wanted.growth > 0 ? cure : ": lower time.dt, or raise time.end"));
     result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
     const double length = result.end - result.begin;
 

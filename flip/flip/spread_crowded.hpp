@@ -1,11 +1,14 @@
-// on the mesh: where particles of a liquid lie too close, they are moved apart.
+// on the mesh: where particles of a liquid lie too close, they are moved apart; those of a gas without
+// another material, to where they are missing, too.
 //
 // Nothing in the equations brings the places of particles back to their volumes. Where water falls back upon
 // itself, or particles gather bit by bit, cells come to hold more of it than their volume, and its surface
-// sinks. So in every step crowded cells give a tenth of what they have too much to their neighbors, by a
-// displacement that is found as a pressure is,
+// sinks; a gas that turns leaves cells empty after some turns, and an empty cell has no pressure. So in every step
+// crowded cells give a tenth of what they have too much to their neighbors, by a displacement that is found as a
+// pressure is,
 //     D M^-1 D^T phi = (crowding beyond a twentieth)/10,   x_p += sum_g S u_g,   u = M^-1 D^T phi,
-// up to a quarter of a cell. It is no motion: velocity, volume and energy of the particles stay as they are.
+// up to a quarter of a cell; of a gas crowding has both signs. It is no motion: velocity, volume and energy of
+// the particles stay as they are.
 // note: What had fallen is lifted without work.
 // source: the idea is that of Losasso, Talton, Kwatra and Fedkiw, IEEE Trans. Vis. Comput. Graph. 14, 797
 //         (2008), whose divergence is given by the density of particles.
@@ -24,19 +27,21 @@ inline constexpr double crowded = 0.05, crowded_ring = 0.2;
 
 /// in:     cells.crowding, surface; nodes.m
 /// in/out: nodes.increment, the velocity that moves particles
-/// exact:  nothing is moved through walls; without crowded cells nothing at all
+/// exact:  nothing is moved through walls; without crowded cells, of a gas without empty ones, nothing at all
 inline void spread_crowded(const Problem& problem, double dt, Mesh& mesh) {
     const Grid& grid = problem.grid;
     const Cells& c = mesh.cells;
     Nodes& g = mesh.nodes;
-    if (c.crowding.size() == 0 || !(c.crowding.maxCoeff() > 0)) return;
+    if (c.crowding.size() == 0 || c.crowding.isZero(0)) return;
     const double allowed = grid.axisymmetric ? crowded_ring : crowded;
     const detail::PressureCells cells = detail::number_cells(problem, dt, mesh);
     Eigen::VectorXd load(cells.count()), phi;
-    for (long r = 0; r < cells.count(); ++r)
-        load[r] = 0.1 * std::max(0.0, c.crowding[cells.index[r]] -
-                                          allowed * c.V_of_column[column_of(grid, cells.index[r])]);
-    if (!(load.size() > 0 && load.maxCoeff() > 0)) return;
+    for (long r = 0; r < cells.count(); ++r) {
+        const double excess = c.crowding[cells.index[r]],
+                     most = allowed * c.V_of_column[column_of(grid, cells.index[r])];
+        load[r] = 0.1 * (excess - std::clamp(excess, -most, most));
+    }
+    if (load.isZero(0)) return;
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(cells.count());
     auto A = detail::pressure_matrix(problem, 1 / problem.scheme.theta, mesh, cells, none);
     A.diagonal() *= 1 + 1e-6;  // a closed box has a phi, too
