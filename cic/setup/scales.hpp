@@ -181,7 +181,7 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
     const double in_field =
         !plane                                               ? 0
         : Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p ? 0.08 * omega_p * parameters.end
-        : B.y == 0 && Omega_oblique > 0.12 * omega_p          ? 0.06 * omega_p * parameters.end
+        : B.y == 0 && Omega_oblique > 0.12 * omega_p         ? 0.06 * omega_p * parameters.end
                                                              : 0;
     common::warn(warnings, in_field > 10, B.y == 0 ? "B oblique to the mesh" : "B_y",
                  " turns forces of the momentum scheme, which on a mesh are not along k, into "
