@@ -687,6 +687,25 @@ TEST_CASE("a grain that moves along takes the same step") {
 
 // ---- factors of grains --------------------------------------------------------------------------
 
+TEST_CASE("the velocity of a dof is made of those that its ghosts say") {
+    long lines = 0;
+    for_each_start([&](const Situation& s, const auto&, ThetaRun& run, auto&) {
+        const long n = run.nodes.size();
+        const Dense B = spreading(run.nodes);
+        const MasterDofs masters(run.nodes);
+        for (long i = 0; i < n; ++i) {
+            Vector x = B.row(i).head(n).transpose(), y = B.row(n + i).tail(n).transpose();
+            for (const MasterDofs::Share& share : masters.of_dof(i)) {
+                x[share.dof] -= share.x, y[share.dof] -= share.y;
+                if (s.c.problem.walls[0] == "open") CHECK(share.mass == share.x);
+                lines += share.x == 2;
+            }
+            CHECK((x.norm() == 0 && y.norm() == 0));
+        }
+    });
+    CHECK(lines >= 50);
+}
+
 TEST_CASE("the factors of a grain undo its matrix") {
     double off = 0, left = 0;
     for_each_start([&](const Situation&, const auto&, ThetaRun& run, auto& solver) {
@@ -813,6 +832,25 @@ TEST_CASE("a pull far below the largest impulse is round-off and opens no pair")
                 const auto closed = std::count_if(
                     begin, end, [](const ContactPair& pair) { return pair.closed(); });
                 CHECK(closed == (pull < 1e-9 ? end - begin : 0));
+            }
+        }
+    });
+}
+
+TEST_CASE("a pair that has changed twice gives up its friction before it opens") {
+    for_each_contact_case([&](ThetaRun& run, auto& solver, Random&) {
+        ActiveSet& set = solver.set;
+        const std::vector<double> V(solver.force_controls.size(), 0.0);
+        for (const int changes : {0, 1, 2, 3}) {
+            for (const double friction : {0.0, 0.5}) {
+                for (std::size_t k = 0; k < set.list.pairs.size(); ++k) {
+                    ContactPair& pair = set.list.pairs[k];
+                    pair.state = ContactState::slip, pair.lambda_n = -1, pair.lambda_t = friction;
+                    set.updates[k].changes = changes;
+                }
+                update_active_set(Vector::Zero(2 * run.nodes.size()), V, run.nodes, 1e-12, set);
+                const bool opens = changes < 2 || friction == 0;
+                for (const ContactPair& pair : set.list.pairs) CHECK(pair.closed() == !opens);
             }
         }
     });
@@ -992,6 +1030,13 @@ TEST_CASE("conjugate gradients know a solution when they see one and say when th
 }
 
 TEST_CASE("a step that is not solved ends the run with the reason") {
+    // Less friction is advised above 2.
+    ActiveSet set;
+    set.list.pairs.resize(1);
+    for (const double mu : {0.0, 2.0, 2.1}) {
+        set.list.pairs[0].mu = mu;
+        CHECK((set.advice().find("less friction") != std::string::npos) == (mu > 2));
+    }
     Case c = case_on(24, 12, 1.2);
     c.alpha = 3, c.problem.contact.friction = 0.4;
     c.problem.grains = {disk_at("left", 0.4, 0.3, 0.2, 0.1, 0.05),
