@@ -27,10 +27,11 @@ mkdir -p "$folder"
 
 full_name() {  # of a key without its section
     case $1 in *.*) echo "$1"; return ;; esac
-    full=$("$program" --help | sed -n "s/^  \([a-z_.<>]*\.$1\) .*/\1/p")
+    full=$("$program" --help | sed -n "s/^  \([a-z_.]*\.$1\) .*/\1/p")
+    [ -n "$full" ] || full=$("$program" --help | sed -n "s/^  \([a-z_.<>]*\.$1\) .*/\1/p" | head -n 1)
     [ -n "$full" ] || fail "'$1' is no parameter of $program"
     [ "$(echo "$full" | grep -c .)" = 1 ] || fail "'$1' is the key of several parameters of $program: $(echo $full)"
-    case $full in *'<name>'*) fail "'$1' is a key of each of them: $full" ;; esac
+    case $full in *'<name>'*) fail "'$1' is a key of each: $full" ;; esac
     echo "$full"
 }
 

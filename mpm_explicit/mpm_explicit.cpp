@@ -6,7 +6,7 @@
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml time.alpha=1
 // Run:   build/mpm_explicit mpm_explicit/cases/rebound.toml contact.separation=0
 //
-// Reading order: step.hpp; then particles.hpp, shapes.hpp, grain_nodes.hpp, transfer.hpp, strain.hpp,
+// Reading order: step.hpp; then particles.hpp, shapes.hpp, grid/grain_nodes.hpp, transfer.hpp, strain.hpp,
 // update_stress.hpp, accelerate_nodes.hpp, contact.hpp, move_particles.hpp, budget.hpp.
 #include <optional>
 

@@ -72,7 +72,8 @@ inline bool is_at_rest(const Case& parameters) {
                                                          : T[0] == T[2];
         if (s.profile != "uniform" || !s.density.is_number() || s.has_distribution() ||
             !isotropic || !perturbations_of(parameters, s).empty() || s.ripple != 0 ||
-            s.drift() != first->drift() || drifts_across_B(s))
+            s.drift() != first->drift() || drifts_across_B(s) || s.drift_y != 0 ||
+            (parameters.dimensions == 1 && s.drift_z != 0))  // of which no momentum is recorded
             return false;
     }
     return true;

@@ -35,11 +35,11 @@ struct PerturbationCase {
 
 /// What read_formulas() has made of the formulas of a species.
 struct Tables {
-    Distribution x;               // of positions, and
-    std::vector<Distribution> z;  // in two dimensions, for every piece of x
-    double mean_density = 0, largest_density = 0;
-    std::array<Distribution, 3> v;  // of the velocities along x, y and z
-    Distribution speed;             // of the one across an axis
+    Distribution x;                     // of positions, and
+    std::vector<Distribution> z;        // in two dimensions, for every piece of x
+    double mean_density = 0, peak = 1;  // the largest mean over a cell, in mean densities
+    std::array<Distribution, 3> v;      // of the velocities along x, y and z
+    Distribution speed;                 // of the one across an axis
 };
 
 /// One species; the components of a vector are _x, _y, _z.
@@ -68,10 +68,6 @@ struct SpeciesCase {
     bool mobile() const { return motion == "mobile"; }
     double mean_density() const {
         return density.is_number() ? double(density) : tables.mean_density;
-    }
-    /// How many times the mean density the densest place has.
-    double peak() const {
-        return density.is_number() ? 1 : tables.largest_density / tables.mean_density;
     }
     std::array<double, 3> drift() const { return {drift_x, drift_y, drift_z}; }
     bool at_rest() const { return drift_x == 0 && drift_y == 0 && drift_z == 0; }

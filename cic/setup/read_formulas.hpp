@@ -12,6 +12,21 @@ namespace cic {
 /// Pieces of the table of a distribution of velocities.
 inline constexpr long velocity_pieces = 4096;
 
+/// The mean over a cell from piece j on of a table of densities, in means of all.
+inline double mean_from(const Distribution& table, std::size_t j, const common::Axis& axis) {
+    const std::size_t all = table.f.size(), cell = all / std::size_t(axis.cells),
+                      end = std::min(all, j + cell);
+    return (table.cumulative[end] - table.cumulative[j]) * double(all) / double(cell);
+}
+
+/// The largest of these; 0 for an empty table.
+inline double peak_of(const Distribution& table, const common::Axis& axis) {
+    double peak = 0;
+    for (std::size_t j = 0; j < table.f.size(); ++j)
+        peak = std::max(peak, mean_from(table, j, axis));
+    return peak;
+}
+
 /// Reads the formulas of all species and makes their tables, density and distributions.
 ///   The table of positions has at least 4096 pieces in one dimension and 512 x 512 in two, with one
 ///   or more in a cell.
@@ -29,7 +44,7 @@ inline void read_formulas(Case& parameters) {
             const auto density = [&](double x, double z) {
                 return s.density.at(x, z, std::hypot(x - s.center_x, z - s.center_z));
             };
-            double sum = 0, most = 0;  // of all pieces
+            double sum = 0;  // of all pieces
             const bool plane = parameters.dimensions == 2;
             const long pieces = std::max(plane ? 512L : 4096L, grid.x.cells),
                        rows = plane ? std::max(512L, grid.z.cells) : 1;
@@ -37,7 +52,7 @@ inline void read_formulas(Case& parameters) {
                 double column = 0;
                 const auto along_z = [&](double z) {
                     const double n = density(x, z);
-                    column += n, most = std::max(most, n);
+                    column += n;
                     return n;
                 };
                 if (plane)
@@ -49,7 +64,10 @@ inline void read_formulas(Case& parameters) {
             });
             refuse_nothing(s.tables.x, "density");
             s.tables.mean_density = sum / double(pieces * rows);
-            s.tables.largest_density = most;
+            for (std::size_t j = 0; j < s.tables.x.f.size(); ++j)
+                s.tables.peak =
+                    std::max(s.tables.peak, mean_from(s.tables.x, j, grid.x) *
+                                                (plane ? peak_of(s.tables.z[j], grid.z) : 1));
         }
         const auto read = [&](common::Formula& f, const char* what, double low, bool speeds,
                               Distribution& table) {

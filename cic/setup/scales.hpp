@@ -60,22 +60,25 @@ inline Scales scales_of(const Case& parameters) {
         scale.Omega_c = std::fabs(k.charge) * parameters.B.size() / k.mass;
         scale.debye_length = omega2 > 0 ? scale.thermal_speed / scale.omega_p : 0;
         scale.particles = particle_count(parameters, k);
-        scale.peak = k.peak();
+        scale.peak = k.tables.peak;
         if (scale.debye_length > 0) {
             inverse_debye2 += 1 / std::pow(scale.debye_length, 2);
-            largest_inverse += scale.peak / std::pow(scale.debye_length, 2);
+            largest_inverse =
+                std::max(largest_inverse, scale.peak / std::pow(scale.debye_length, 2));
         }
         if (k.profile != "point") {
             s.omega_p = std::hypot(s.omega_p, scale.omega_p);
-            s.largest_omega_p =
-                std::hypot(s.largest_omega_p, std::sqrt(scale.peak) * scale.omega_p);
+            s.largest_omega_p = std::max(s.largest_omega_p, std::sqrt(scale.peak) * scale.omega_p);
         }
         s.particles += scale.particles;
         s.most += most_particles(parameters, k);
         s.species.push_back(scale);
     }
     s.debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(inverse_debye2) : 0;
-    s.least_debye_length = inverse_debye2 > 0 ? 1 / std::sqrt(largest_inverse) : 0;
+    // Species may be dense at different places: at least what one has, and all have in the mean.
+    s.largest_omega_p = std::max(s.largest_omega_p, s.omega_p);
+    s.least_debye_length =
+        inverse_debye2 > 0 ? 1 / std::sqrt(std::max(largest_inverse, inverse_debye2)) : 0;
     s.steps = std::lround(parameters.end / parameters.dt);
     // Species are sorted one after the other.
     long sorted = 0;
@@ -178,12 +181,12 @@ inline void warn_of_cold_plasma(const Case& parameters, const Scales& scales,
                  "a cold plasma that touches walls does not rest in the momentum scheme: the field "
                  "on the nodes of a wall drives it, and noise grows as exp(",
                  at_walls, ") by time.end: take method.scheme = \"energy\"");
-    const double in_field =
-        !plane                                               ? 0
-        : Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p ? 0.08 * omega_p * parameters.end
-        : B.y == 0 && Omega_oblique > 0.12 * omega_p         ? 0.06 * omega_p * parameters.end
-                                                             : 0;
-    common::warn(warnings, in_field > 10, B.y == 0 ? "B oblique to the mesh" : "B_y",
+    const double across = std::max(std::fabs(B.x), std::fabs(B.z));
+    const bool by_y = plane && Omega_y > 0.1 * omega_p && Omega_y < 1.5 * omega_p,
+               oblique = plane && Omega_oblique > 0.12 * omega_p &&
+                         std::min(std::fabs(B.x), std::fabs(B.z)) > 0.15 * across;
+    const double in_field = (by_y ? 0.08 : oblique ? 0.06 : 0) * omega_p * parameters.end;
+    common::warn(warnings, in_field > 10, by_y ? "B_y" : "B oblique to the mesh",
                  " turns forces of the momentum scheme, which on a mesh are not along k, into "
                  "growth: waves of some cells in a cold plasma grow as up to exp(",
                  in_field, ") by time.end: take method.scheme = \"energy\"");

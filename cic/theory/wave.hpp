@@ -170,12 +170,13 @@ inline std::string likely_driven_by_mesh(const Case& parameters) {
             (!along ? other : cold(s) ? own : warm) += omega2(s);
         }
         const double omega_p = std::sqrt(own),
+                     u = std::fabs(main->*drift) / (omega_p * axis.spacing()),
                      rate = (tsc   ? 0.1
                              : cic ? 0.2
                                    : 0.4) *
-                            omega_p,
-                     u = std::fabs(main->*drift) / (omega_p * axis.spacing());
-        if (other > 0.005 * own || warm > 0.1 * own || !(u > 0.02) || !(rate * parameters.end > 15))
+                            (u < 0.05 ? 0.6 : 1) * omega_p;
+        if (other > 0.005 * own || warm > 0.1 * own || !(u > 0.025) ||
+            !(rate * parameters.end > 15))
             return "";
         const std::string energy =
             sentence("take method.scheme = \"energy\"",

@@ -426,7 +426,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +
                       " rows of the history are between the transient of the start and the end of "
                       "the linear phase" +
-                      (wanted.growth > 0 ? cure : ": lower time.dt, or raise time.end"));
+                      (wanted.growth > 0 ? cure : std::string()));
     result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
     const double length = result.end - result.begin;
 

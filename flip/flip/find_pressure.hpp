@@ -50,7 +50,7 @@ inline bool has_bare_node(const Grid& grid, const Nodes& g, long n) {
 ///         the part by which gas would have to grow to fill the cell, or least_filled of it beside
 ///         another material: in -1/2 to 1 where it is confined, else in 0 to 1; and crowding, what
 ///         cells of liquid hold beyond their volume, at most that volume, and those of one gas
-///         beyond it or, with the other sign, short of it
+///         that is not confined beyond it or, with the other sign, short of it
 /// exact:  with volumes a state of equal pressure stays one wherever the particles are, as long as
 ///         they fill the cells, or the filling of the scheme is 0
 /// errors: NumericalError for a negative or not finite density or energy, with where and when
@@ -116,9 +116,10 @@ inline void find_pressure(const Grid& grid, std::span<const Material> materials,
                             : 0;
         }
         surface = surface || has_bare_node(grid, g, n);
-        if (volumes)  // one gas fills all that it is in
-            c.crowding[n] =
-                gas && count > 1 ? 0 : std::clamp(c.volume[n] - V_c, gas ? -V_c : 0.0, V_c);
+        if (volumes)
+            c.crowding[n] = gas && (count > 1 || confined)
+                                ? 0
+                                : std::clamp(c.volume[n] - V_c, gas ? -V_c : 0.0, V_c);
         surface_c[n] = surface ? 1 : 0;
         if (surface) p_c[n] = 0;
     });

@@ -1,5 +1,5 @@
 // on the mesh: where particles of a liquid lie too close, they are moved apart; those of a gas without
-// another material, to where they are missing, too.
+// another material whose paths are not confined, to where they are missing, too.
 //
 // Nothing in the equations brings the places of particles back to their volumes. Where water falls back upon
 // itself, or particles gather bit by bit, cells come to hold more of it than their volume, and its surface
@@ -7,8 +7,9 @@
 // crowded cells give a tenth of what they have too much to their neighbors, by a displacement that is found as a
 // pressure is,
 //     D M^-1 D^T phi = (crowding beyond a twentieth)/10,   x_p += sum_g S u_g,   u = M^-1 D^T phi,
-// up to a quarter of a cell; of a gas crowding has both signs. It is no motion: velocity, volume and energy of
-// the particles stay as they are.
+// up to a quarter of a cell; of a gas crowding has both signs, but beside a void, into which nothing draws it,
+// and none where it enters or leaves, a column of particles at a time. It is no motion: velocity, volume and
+// energy of the particles stay as they are.
 // note: What had fallen is lifted without work.
 // source: the idea is that of Losasso, Talton, Kwatra and Fedkiw, IEEE Trans. Vis. Comput. Graph. 14, 797
 //         (2008), whose divergence is given by the density of particles.
@@ -25,6 +26,36 @@ namespace flip {
 /// cell fluctuate by more.
 inline constexpr double crowded = 0.05, crowded_ring = 0.2;
 
+namespace detail {
+
+/// What a cell has too much, or of a gas too little.
+inline double excess_of(const Problem& problem, const Cells& c, long n) {
+    const double excess = c.crowding[n];
+    const bool gas = problem.materials.size() == 1 && problem.materials[0].p_infinity == 0;
+    if (!gas || excess == 0) return excess;
+    const Grid& grid = problem.grid;
+    const long i = column_of(grid, n), j = n / grid.stride() - 1;
+    const auto passes = [&](Side s) {
+        return problem.boundaries.is(s, BoundaryKind::open) ||
+               problem.boundaries.is(s, BoundaryKind::inflow);
+    };
+    if ((i == 0 && passes(x_low)) || (i == grid.x.cells - 1 && passes(x_high)) ||
+        (j == 0 && passes(z_low)) || (j == grid.z.cells - 1 && passes(z_high)))
+        return 0;
+    if (excess > 0) return excess;
+    for (long b = j - 1; b <= j + 1; ++b)
+        for (long a = i - 1; a <= i + 1; ++a) {
+            const bool beyond_x = a < 0 || a >= grid.x.cells, beyond_z = b < 0 || b >= grid.z.cells;
+            if ((beyond_x && !grid.x.periodic) || (beyond_z && !grid.z.periodic)) continue;
+            const long beside =
+                grid.index((a + grid.x.cells) % grid.x.cells, (b + grid.z.cells) % grid.z.cells);
+            if (c.surface[beside] != 0) return 0;
+        }
+    return excess;
+}
+
+}  // namespace detail
+
 /// in:     cells.crowding, surface; nodes.m
 /// in/out: nodes.increment, the velocity that moves particles
 /// exact:  nothing is moved through walls; without crowded cells, of a gas without empty ones, nothing at all
@@ -37,7 +68,7 @@ inline void spread_crowded(const Problem& problem, double dt, Mesh& mesh) {
     const detail::PressureCells cells = detail::number_cells(problem, dt, mesh);
     Eigen::VectorXd load(cells.count()), phi;
     for (long r = 0; r < cells.count(); ++r) {
-        const double excess = c.crowding[cells.index[r]],
+        const double excess = detail::excess_of(problem, c, cells.index[r]),
                      most = allowed * c.V_of_column[column_of(grid, cells.index[r])];
         load[r] = 0.1 * (excess - std::clamp(excess, -most, most));
     }

@@ -72,7 +72,7 @@ inline CellFields cell_fields(const Grid& grid, const Mesh& mesh) {
     const bool swirl = !mesh.cells.swirl.empty();
     if (swirl) f.v_theta.setZero(grid.size());
     if (mesh.cells.volume.size() > 0)
-        f.overfull = sum_of_cells(grid, mesh.cells.crowding) /
+        f.overfull = sum_of_cells(grid, mesh.cells.crowding.cwiseMax(0)) /
                      std::max(sum_of_cells(grid, mesh.cells.volume), 1e-300);
     for_each_cell(grid, [&](long i, long, long n) {
         const double M = mesh.cells.M[n], per_V = 1 / mesh.cells.V_of_column[i];
