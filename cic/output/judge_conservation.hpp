@@ -18,7 +18,7 @@ namespace cic {
 inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
                            Summary& summary) {
     if (parameters.has_walls()) return;
-    // B in the plane turns all momentum but that along it.
+    // B turns all momentum but that along it, which x and z have where B is in the plane.
     const bool plane = parameters.dimensions == 2;
     const MagneticField& B = parameters.B;
     if (B.y != 0 || (!plane && B.z != 0)) return;
@@ -59,21 +59,20 @@ inline bool is_at_rest(const Case& parameters) {
     if (parameters.has_walls() || parameters.gauss_sign < 0) return false;
     const SpeciesCase* first = nullptr;
     const MagneticField& B = parameters.B;
-    const auto drifts_across_B = [&](const SpeciesCase& s) {
-        return B.y * s.drift_z != B.z * s.drift_y || B.z * s.drift_x != B.x * s.drift_z ||
-               B.x * s.drift_y != B.y * s.drift_x;
+    // Along B, and of a momentum that is recorded.
+    const auto drifts_freely = [&](const SpeciesCase& s) {
+        return s.drift_y == 0 && (parameters.dimensions == 2 || s.drift_z == 0) &&
+               B.y * s.drift_x == 0 && B.y * s.drift_z == 0 && B.z * s.drift_x == B.x * s.drift_z;
     };
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         if (!first) first = &s;
         const std::array<double, 3> T = s.temperatures(parameters.axis());
-        const bool isotropic = parameters.dimensions == 1 && !parameters.turns(0) ? true
-                               : parameters.magnetized() ? T[0] == T[1] && T[0] == T[2]
-                                                         : T[0] == T[2];
+        const bool isotropic = parameters.magnetized() ? T[0] == T[1] && T[0] == T[2]
+                                                       : parameters.dimensions == 1 || T[0] == T[2];
         if (s.profile != "uniform" || !s.density.is_number() || s.has_distribution() ||
             !isotropic || !perturbations_of(parameters, s).empty() || s.ripple != 0 ||
-            s.drift() != first->drift() || drifts_across_B(s) || s.drift_y != 0 ||
-            (parameters.dimensions == 1 && s.drift_z != 0))  // of which no momentum is recorded
+            s.drift() != first->drift() || !drifts_freely(s))
             return false;
     }
     return true;

@@ -104,7 +104,7 @@ inline Scales scales_of(const Case& parameters) {
     return s;
 }
 
-/// Of scales where the plasma is densest, that; nothing where it is uniform.
+/// What a sentence adds to largest_omega_p where the density varies; nothing for a uniform plasma.
 inline std::string where_densest(const Scales& scales) {
     return scales.largest_omega_p > 1.001 * scales.omega_p ? " where the plasma is densest" : "";
 }

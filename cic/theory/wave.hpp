@@ -144,9 +144,11 @@ inline std::string likely_bouncing(const Case& parameters, const Theory& theory,
 
 /// Cold plasma that moves through its mesh as a whole, along x or along z: aliases of its waves resonate with
 /// each other. Where that comes out of round-off by the end, that, and what to change; else nothing.
-/// What moves otherwise has a two-hundredth of omega_p^2 at most, what is warm and moves along a tenth.
+/// Species with another drift may have a two-hundredth of omega_p^2, warm ones with the same drift a tenth:
+/// more of them, and other waves are faster.
 /// note:   The rate is that of mesh_dispersion() at 3/8 (tsc 7/16) of a wavelength in a cell, which hardly
-///         depends on the drift from 0.02 to 5 omega_p dx, or on the step; ngp has 0.36 to 0.50.
+///         depends on the drift from 0.05 to 5 omega_p dx, or on the step; at 0.03 it is 0.6 of that. ngp has 0.36 to
+///         0.50.
 inline std::string likely_driven_by_mesh(const Case& parameters) {
     if (parameters.conserving != "momentum" || parameters.gauss_sign < 0) return "";
     const bool cic = parameters.weighting == "cic", tsc = parameters.weighting == "tsc";

@@ -7,9 +7,9 @@
 // crowded cells give a tenth of what they have too much to their neighbors, by a displacement that is found as a
 // pressure is,
 //     D M^-1 D^T phi = (crowding beyond a twentieth)/10,   x_p += sum_g S u_g,   u = M^-1 D^T phi,
-// up to a quarter of a cell; of a gas crowding has both signs, but beside a void, into which nothing draws it,
-// and none where it enters or leaves, a column of particles at a time. It is no motion: velocity, volume and
-// energy of the particles stay as they are.
+// up to a quarter of a cell. The crowding of a gas is negative where it lacks volume. It counts as 0 there beside
+// a void, for gas at the edge of a void lacks nothing, and at open ends and inflows, where particles come and go a
+// column at a time. It is no motion: velocity, volume and energy of the particles stay as they are.
 // note: What had fallen is lifted without work.
 // source: the idea is that of Losasso, Talton, Kwatra and Fedkiw, IEEE Trans. Vis. Comput. Graph. 14, 797
 //         (2008), whose divergence is given by the density of particles.
@@ -28,11 +28,15 @@ inline constexpr double crowded = 0.05, crowded_ring = 0.2;
 
 namespace detail {
 
-/// What a cell has too much, or of a gas too little.
+inline bool is_one_gas(const Problem& problem) {
+    return problem.materials.size() == 1 && problem.materials[0].p_infinity == 0;
+}
+
+/// The crowding of a cell, or 0 where a gas is not spread: at open ends and inflows, and where it lacks volume
+/// beside a void.
 inline double excess_of(const Problem& problem, const Cells& c, long n) {
     const double excess = c.crowding[n];
-    const bool gas = problem.materials.size() == 1 && problem.materials[0].p_infinity == 0;
-    if (!gas || excess == 0) return excess;
+    if (!is_one_gas(problem) || excess == 0) return excess;
     const Grid& grid = problem.grid;
     const long i = column_of(grid, n), j = n / grid.stride() - 1;
     const auto passes = [&](Side s) {
@@ -54,6 +58,28 @@ inline double excess_of(const Problem& problem, const Cells& c, long n) {
     return excess;
 }
 
+/// (1/4, 1/2, 1/4) along x and then along z. D M^-1 D^T hardly sees a load that alternates from cell to cell, and
+/// would answer it with large displacements: in a uniform stream of random particles they grew without end.
+/// exact:  the sum stays
+inline void smooth_load(const Grid& grid, const PressureCells& cells, Eigen::VectorXd& load) {
+    for (const bool along_x : {true, false}) {
+        const Eigen::VectorXd from = load;
+        for (long r = 0; r < cells.count(); ++r) {
+            const long i = column_of(grid, cells.index[r]), j = cells.index[r] / grid.stride() - 1;
+            load[r] = 0.5 * from[r];
+            for (const long step : {-1, 1}) {
+                const long a = i + (along_x ? step : 0), b = j + (along_x ? 0 : step),
+                           in_x = grid.x.periodic ? (a + grid.x.cells) % grid.x.cells : a,
+                           in_z = grid.z.periodic ? (b + grid.z.cells) % grid.z.cells : b;
+                const bool beyond =
+                    in_x < 0 || in_z < 0 || in_x >= grid.x.cells || in_z >= grid.z.cells;
+                const int beside = beyond ? -1 : cells.number[grid.index(in_x, in_z)];
+                load[r] += 0.25 * from[beside >= 0 ? beside : r];
+            }
+        }
+    }
+}
+
 }  // namespace detail
 
 /// in:     cells.crowding, surface; nodes.m
@@ -73,6 +99,7 @@ inline void spread_crowded(const Problem& problem, double dt, Mesh& mesh) {
         load[r] = 0.1 * (excess - std::clamp(excess, -most, most));
     }
     if (load.isZero(0)) return;
+    if (detail::is_one_gas(problem)) detail::smooth_load(grid, cells, load);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(cells.count());
     auto A = detail::pressure_matrix(problem, 1 / problem.scheme.theta, mesh, cells, none);
     A.diagonal() *= 1 + 1e-6;  // a closed box has a phi, too
