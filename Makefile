@@ -37,11 +37,12 @@ warnings := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion 
 sanitize := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 # Wide vectors where the machine has them; there, g++ 12 takes intrinsics that Eigen uses for
-# uninitialized. clang says of some loops that it leaves them as they are, which is no defect. The compiler is asked when it is first used, not when make starts: `make deps` may
+# uninitialized. clang says of some loops that it leaves them as they are, which is no defect, and does not know
+# [[gnu::noclone]]. The compiler is asked when it is first used, not when make starts: `make deps` may
 # have installed it in between.
 machine = $(eval machine := $(shell $(CXX) $(ARCH) -dM -E -x c++ /dev/null 2>/dev/null | awk '\
     /__AVX512F__/ { wide = 1 } /__clang__/ { clang = 1 } \
-    END { if (wide) print "-mprefer-vector-width=512"; if (wide && !clang) print "-Wno-maybe-uninitialized"; if (clang) print "-Wno-pass-failed" }'))$(machine)
+    END { if (wide) print "-mprefer-vector-width=512"; if (wide && !clang) print "-Wno-maybe-uninitialized"; if (clang) print "-Wno-pass-failed -Wno-unknown-attributes" }'))$(machine)
 
 # Nobody asks errno of a square root, or which operation was not exact; without both, loops with square
 # roots, floor() and choices vectorize (with g++; clang's default is the same).

@@ -145,10 +145,10 @@ Growth grow(const Operator& apply, const Preconditioner& precondition, GmresWork
     Eigen::VectorXd& z = work.preconditioned[std::size_t(k)];
     precondition(work.w, z);
     apply(z, work.w);
-    auto [before, length] = orthogonalize(work, k + 1);
+    const auto [before, left] = orthogonalize(work, k + 1);
     if (!std::isfinite(before)) return Growth::not_finite;
     work.operator_size = std::max(work.operator_size, before);
-    if (!(length > negligible * before)) length = 0.0;
+    const double length = left > negligible * before ? left : 0.0;
     work.hessenberg.col(k).head(k + 1) = work.overlap.head(k + 1);
     work.hessenberg(k + 1, k) = length;
     rotate_column(work, k);

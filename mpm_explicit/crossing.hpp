@@ -32,10 +32,11 @@ inline void remember_crossing(const Locator& at, const double* x_p, const double
     for (long k = 0; k < count; ++k) {
         const double dx = x_p[k] - to_x[k], dy = y_p[k] - to_y[k];
         const auto cell = [&](double x, double low) { return std::floor((x - low) * at.per_h); };
-        const bool crosses = (cell(to_x[k], at.x_low) != cell(to_x[k] + dx, at.x_low)) |
-                             (cell(to_y[k], at.y_low) != cell(to_y[k] + dy, at.y_low));
-        const bool near = (std::fabs(dx) <= most) & (std::fabs(dy) <= most);
-        from_x[k] = crosses & near ? dx : 0, from_y[k] = crosses & near ? dy : 0;
+        const double cells_x = cell(to_x[k] + dx, at.x_low) - cell(to_x[k], at.x_low),
+                     cells_y = cell(to_y[k] + dy, at.y_low) - cell(to_y[k], at.y_low);
+        const bool crosses = (cells_x != 0) | (cells_y != 0),
+                   near = (std::fabs(dx) <= most) & (std::fabs(dy) <= most);
+        from_x[k] = (crosses & near) ? dx : 0, from_y[k] = (crosses & near) ? dy : 0;
     }
 }
 

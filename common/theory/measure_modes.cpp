@@ -328,13 +328,23 @@ Match of_both_directions(Match match, const std::vector<Mode>& modes, double siz
     return match;
 }
 
-// Blocks of samples, averaged.
+// One sample in `block`: the mean over a block of the mean over a block of the mean over a block. A single mean
+// lets a seventh of a wave through that is eight times as fast as the one looked for, and the samples fold it
+// back to where that one is; three let a three-hundredth through.
 std::vector<Complex> averaged(std::span<const Complex> z, Rows rows, long block) {
+    std::vector<double> weights{1};
+    for (int mean = 0; mean < 3; ++mean) {
+        std::vector<double> wider(weights.size() + std::size_t(block - 1));
+        for (std::size_t n = 0; n < weights.size(); ++n)
+            for (long m = 0; m < block; ++m)
+                wider[n + std::size_t(m)] += weights[n] / double(block);
+        weights = wider;
+    }
     std::vector<Complex> result;
-    for (long n = rows.begin; n + block <= rows.end; n += block) {
+    for (long n = rows.begin; n + long(weights.size()) <= rows.end; n += block) {
         Complex sum = 0;
-        for (long m = 0; m < block; ++m) sum += z[std::size_t(n + m)];
-        result.push_back(sum / double(block));
+        for (std::size_t m = 0; m < weights.size(); ++m) sum += weights[m] * z[std::size_t(n) + m];
+        result.push_back(sum);
     }
     return result;
 }

@@ -118,7 +118,7 @@ inline void do_work(const Problem& problem, double dt, State& state, PicCells& c
     const auto step_z = [=](long here, long beyond) {
         return 0.5 * ((v[beyond].z + v_tilde[beyond].z) - (v[here].z + v_tilde[here].z));
     };
-    for_each_row_of_cells(grid, [&, work, v, v_tilde, ring](long j) {
+    for_each_row_of_cells(grid, [&, work, ring](long j) {
         const long first = grid.index(0, j);
 #pragma omp simd
         for (long i = 0; i < nx; ++i) {
