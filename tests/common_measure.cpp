@@ -175,6 +175,15 @@ TEST_CASE("the mode of theory is found beside a stronger one which is told as we
     CHECK(seen.window.find("also seen: omega = ") != std::string::npos);
 }
 
+TEST_CASE("a fast wave 300 times as strong does not fold onto the slow one of theory") {
+    // Every 31st sample alone has it at 3 2 pi/1.55 - 11.6586 = 0.5024.
+    const Signal ions{"ions", {0.4995, -11.6586}, {1, 300}, 2000, 0.05, both(0.4995)};
+    const auto seen = measure_mode(times_of(ions), record_of(ions, 1e-6, 1), search_of(ions));
+    REQUIRE(seen.found);
+    CHECK(std::fabs(seen.frequency() - 0.4995) <= seen.frequency_error() + 1e-6);
+    CHECK(seen.frequency_error() <= 1e-3);
+}
+
 TEST_CASE("of a traveling wave and what is left of it the other way the wave is measured") {
     // Theory is nearer to the echo than to the wave.
     Signal whistler{"whistler", {0.0751, -0.0748}, {1, 0.005}, 600, 0.5, both(0.0748)};

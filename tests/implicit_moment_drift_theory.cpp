@@ -306,6 +306,12 @@ TEST_CASE("the sheet of a published moment model grows as in an independent prog
     CHECK(std::abs(fastest_over_z(sheet, w.k).z - w.z) <= 0.02);
 }
 
+TEST_CASE("local waves as fast as electrons gyrate are none of the theory") {
+    CHECK(local_root({25, 1, 1, 4}, 0.2, pi).gamma >= 4);  // where Omega_ce is 4.9
+    const LocalWave w = fastest_over_z({25, 1, 1, 4}, pi);
+    CHECK(std::hypot(w.omega, w.gamma) < 0.5 * 25 * std::tanh(w.z));
+}
+
 TEST_CASE("a resting background of a tenth stops the wave at the edge but not inside") {
     const auto growth = [](double background, double z) {
         return fastest_over_k(thin_sheet(4, background), z).gamma;

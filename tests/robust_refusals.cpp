@@ -1128,9 +1128,13 @@ plasmas uniform uniform.mode_z=1 uniform.wave_E_x=1e-3 uniform.wave_E_z=-1e-3 un
 plasmas uniform uniform.wave_E_x=1e-3
     the seeded E has a part along k: that part follows from the charge, so seed it with
 plasmas beam particles.relativistic=false species.beam.drift_x=0.8 species.beam.drift_z=0.8
-    species 'beam' has speeds of 1.131 c (drift or thermal speed): lower them
+    species 'beam' has speeds of 1.131 c (drift, seed or thermal speed): lower them
 plasmas beam particles.relativistic=false species.beam.temperature_y=1.44
-    species 'beam' has speeds of 1.2 c (drift or thermal speed): lower them
+    species 'beam' has speeds of 1.2 c (drift, seed or thermal speed): lower them
+plasmas beam particles.relativistic=false species.beam.wave_y=1
+    species 'beam' has speeds of 1 c (drift, seed or thermal speed): lower them
+implicit_moment langmuir.toml grid.cells_x=8 uniform.mode_x=4
+    theory.wave = "langmuir": no wave has its E along k, since the field of this mode is smoothed
 implicit_moment beam particles.relativistic=true field.rotation=mesh
     field.rotation = "mesh" turns the sums of all particles by one angle, and relativistic
 implicit_moment beam particles.relativistic=true field.solver=newton_krylov

@@ -439,7 +439,10 @@ plasmas electrons time.dt=1e-4 time.end=0.01 grid.length_x=0.1 wave_E_y -> no wa
 plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4
     warning: the seed of species 'electrons' moves particles through the walls across z and is no
     wave between them: set its phase_z = 90
-plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4 species.electrons.phase_z=90 -> no warning
+    warning: the species together have a charge of -1 e n0, and between walls nothing makes it
+    neutral: add a species of the other charge
+plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species.electrons.wave_z=1e-4 species.electrons.phase_z=90
+    warning: the species together have a charge of -1 e n0
 plasmas electrons species.electrons.charge=0
     warning: no species has a charge, and no field acts on any: give one a charge
 explicit_em grid.cells_x=256 grid.cells_z=128
@@ -463,6 +466,8 @@ explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 gr
     the push is not relativistic
 explicit_em beam species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded with u = gamma v above c
+implicit_moment e_cross_b.toml uniform.E_x=0.3 uniform.B_y=0.2
+    warning: uniform.E across B is 1.5 of B
 # What another set-up reads.
 plasmas uniform.B_x=0.1 current_sheet.drift=2
     warning: [current_sheet] has no effect with plasma.setup = "harris": take out what is there

@@ -66,7 +66,16 @@ inline bool has_uniform_E(const Case& w) {
     return w.uniform.E_x != 0 || w.uniform.E_y != 0 || w.uniform.E_z != 0;
 }
 
-/// The columns of a uniform plasma with a uniform E: the mean of E.
+/// Whether a uniform plasma has a mean E, or gets one because it drifts across B.
+inline bool has_mean_E(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z);
+    return has_uniform_E(w) || std::ranges::any_of(u.species, [&](const SpeciesCase& s) {
+               return B.cross(Eigen::Vector3d(s.drift_x, s.drift_y, s.drift_z)).norm() > 0;
+           });
+}
+
+/// Its columns: the mean of E.
 inline void add_mean_field(const Grid& grid, const FieldState& field, common::Row& row) {
     for (long a = 0; a < 3; ++a)
         row.add(std::string("mean_E_") + "xyz"[a], "m_i*c*omega_pi/e",

@@ -182,7 +182,7 @@ class Recorder {
             add_reconnection(parameters_, field, row);
         if (parameters_.is_along_current()) sheet_->add(field, row);
         if (parameters_.is_uniform()) add_mode(parameters_, field, row);
-        if (has_uniform_E(parameters_)) add_mean_field(grid, field, row);
+        if (has_mean_E(parameters_)) add_mean_field(grid, field, row);
         return row;
     }
 

@@ -228,11 +228,12 @@ inline void validate_uniform(const Case& w) {
                turned(sign_E));
     for (const SpeciesCase& s : u.species) {
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
-        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z);
-        const double fastest = std::max(drift, std::sqrt(T / s.mass));
-        refuse(fastest >= 1 && !w.is_relativistic(), "species '", s.name, "' has speeds of ",
-               fastest,
-               " c (drift or thermal speed): lower them, or set particles.relativistic = true");
+        const double drift = std::hypot(s.drift_x, s.drift_y, s.drift_z),
+                     seed = std::hypot(s.wave_x, s.wave_y, s.wave_z);
+        const double fastest = std::max({drift, seed, std::sqrt(T / s.mass)});
+        refuse(
+            fastest >= 1 && !w.is_relativistic(), "species '", s.name, "' has speeds of ", fastest,
+            " c (drift, seed or thermal speed): lower them, or set particles.relativistic = true");
     }
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
@@ -325,7 +326,8 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     return warnings;
 }
 
-/// Warnings of what is faster than light at the start, how many particles, and of sheets whose heat is relativistic.
+/// Warnings of what is faster than light at the start, how many particles, of a drift E x B that would be, of what
+/// nothing makes neutral, and of sheets whose heat is relativistic.
 inline std::vector<std::string> superluminal_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
@@ -337,6 +339,18 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
                  : "faster than light, and the push is not relativistic");
     }
     if (const double heat = relativistic_heat(w); heat > 0) warnings.push_back(hot_sheet(heat));
+    if (!w.is_uniform()) return warnings;
+    const UniformCase& u = w.uniform;
+    const Eigen::Vector3d E(u.E_x, u.E_y, u.E_z), B(u.B_x, u.B_y, u.B_z);
+    const double fast = B.norm() > 0 ? E.cross(B).norm() / B.squaredNorm() : 0;
+    warn(warnings, fast >= 1, "uniform.E across B is ", fast,
+         " of B: at 1 nothing drifts with E x B any more, and particles run away: lower it, or "
+         "raise uniform.B");
+    double charge = 0;
+    for (const SpeciesCase& s : u.species) charge += s.density * s.charge;
+    warn(warnings, std::fabs(charge) > 1e-9 && !(w.grid.x.periodic && w.grid.z.periodic),
+         "the species together have a charge of ", charge,
+         " e n0, and between walls nothing makes it neutral: add a species of the other charge");
     return warnings;
 }
 

@@ -102,9 +102,11 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
     summary.result_info("theory_omega", theory.omega, "Omega_ci", local);
     summary.result_info("theory_z", theory.z, "L", local);
     if (!(theory.gamma > 0))
-        return summary.not_measured("growth_over_theory",
-                                    "local theory has no growth for the dominant mode: raise "
-                                    "current_sheet.drift, or refine the mesh along x");
+        return summary.not_measured(
+            "growth_over_theory",
+            "local theory, of waves much slower than electrons gyrate, has no "
+            "growth for the dominant mode: raise current_sheet.drift or "
+            "mass_ratio, or refine the mesh along x");
     const EdgeWave wave(history, dominant);
     common::ModeSearch search{.expected = {{theory.omega, theory.gamma}},
                               .begin = 0,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -28,11 +29,15 @@ inline bool is_gem(const Case& w) {
            h.guide_field == 0;
 }
 
+inline bool has_seed(const SpeciesCase& s) {
+    return s.wave_x != 0 || s.wave_y != 0 || s.wave_z != 0;
+}
+
 /// The window of a case.
 ///     GEM                      two independent codes keep 0.6 %
 ///     other sheets             3 %, a sixth of what a sheet turns into heat until unit flux
 ///     light, Langmuir wave     exp(2 gamma t) - 1 with the damping of the scheme, 5 % for particles
-///     other cold waves         from 0 to that
+///     with other cold waves    from 0 to that
 ///     either with theta > 1/2  what theta took from wave and noise, energy_by_theta, and what the current
 ///                              that moments predict may take beside: friction
 ///     uniform plasma           5 % of what is not the uniform magnetic field, which nothing can use
@@ -49,8 +54,10 @@ inline EnergyWindow energy_window(const Case& w, double by_theta) {
         window.tolerance = 0.03;
     } else if (w.wave == "light" || w.wave == "langmuir" || w.wave == "cold") {
         const std::complex<double> wave = wave_of(w)->expect(w).omega;
-        // Other cold waves of the seed may be damped less.
-        double most = std::expm1(2 * wave.imag() * w.end), least = w.wave == "cold" ? 0 : most;
+        // Other waves of the seed may be damped less, or not at all where species move alike.
+        const bool others =
+            w.wave == "cold" || std::ranges::count_if(w.uniform.species, has_seed) > 1;
+        double most = std::expm1(2 * wave.imag() * w.end), least = others ? 0 : most;
         window.source = "damping of the scheme";
         if (by_theta < 0) {
             Case without = w;
@@ -69,36 +76,43 @@ inline EnergyWindow energy_window(const Case& w, double by_theta) {
     return window;
 }
 
-/// The largest change of the momentum of a plasma that drifts as a whole, over that momentum, which is conserved;
-/// in a uniform magnetic field of its component along the field.
-/// out:    NaN where a case has walls, an electric field, a charged background or no such drift
+/// The largest change of the momentum of a plasma that drifts as a whole, over that momentum, in a periodic box.
+/// What is conserved is that of particles and field; of the field's that of the mean fields counts, for waves
+/// hold little:
+///     sum m v + V <E> x B/(4 pi c)
+/// out:    NaN where a case has walls, a charged background or no such drift
 inline double momentum_change(const Case& w, const common::History& history) {
     const UniformCase& u = w.uniform;
-    if (!w.is_uniform() || !w.grid.x.periodic || !w.grid.z.periodic || has_uniform_E(w))
-        return std::nan("");
-    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z);
-    const auto kept = [&](double x, double y, double z) {
-        const Eigen::Vector3d all(x, y, z);
-        return B.norm() > 0 ? Eigen::Vector3d(all.dot(B) / B.squaredNorm() * B) : all;
-    };
+    if (!w.is_uniform() || !w.grid.x.periodic || !w.grid.z.periodic) return std::nan("");
     // In units of n0: of the drifts together, and of all that moves.
     Eigen::Vector3d drift = Eigen::Vector3d::Zero();
     double all = 0, charge = 0;
     for (const SpeciesCase& s : u.species) {
-        const Eigen::Vector3d each = kept(s.drift_x, s.drift_y, s.drift_z);
+        const Eigen::Vector3d each(s.drift_x, s.drift_y, s.drift_z);
         const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
         drift += s.density * s.mass * each;
         all += s.density * s.mass * (each.norm() + std::sqrt(T / s.mass));
         charge += s.density * s.charge;
     }
-    const double together = drift.norm();
+    const double together = drift.norm(), area = w.grid.x.length * w.grid.z.length;
     if (together <= 0.3 * all || std::fabs(charge) > 1e-9) return std::nan("");
-    const auto x = history.column("momentum_x"), y = history.column("momentum_y"),
-               z = history.column("momentum_z");
+    const auto vectors = [&](const std::string& name) {
+        return std::array{history.column(name + "_x"), history.column(name + "_y"),
+                          history.column(name + "_z")};
+    };
+    const auto P = vectors("momentum"), E = has_mean_E(w) ? vectors("mean_E") : P;
+    const Eigen::Vector3d B(u.B_x, u.B_y, u.B_z);
+    const auto momentum = [&](std::size_t n) {
+        const Eigen::Vector3d of_particles(P[0][n], P[1][n], P[2][n]),
+            mean_E(E[0][n], E[1][n], E[2][n]);
+        // 4 pi n0 = 1.
+        return has_mean_E(w) ? Eigen::Vector3d(of_particles + area / c * mean_E.cross(B))
+                             : of_particles;
+    };
     double change = 0;
-    for (std::size_t n = 0; n < x.size(); ++n)
-        change = std::max(change, kept(x[n] - x[0], y[n] - y[0], z[n] - z[0]).norm());
-    return change / (together * w.grid.x.length * w.grid.z.length);
+    for (std::size_t n = 0; n < P[0].size(); ++n)
+        change = std::max(change, (momentum(n) - momentum(0)).norm());
+    return change / (together * area);
 }
 
 /// What the mass matrix promises: the energy of particles and field changes in a step by what theta takes
@@ -160,12 +174,27 @@ inline void compare_momentum(const Case& w, const common::History& history,
     summary.result_at_most("momentum_change", change, "", 0.05, "conservation");
 }
 
+/// Particles that a push without the Lorentz factor has made faster than light, which conserves all else.
+inline void compare_speed(const Case& w, const common::History& history, common::Summary& summary) {
+    if (w.is_relativistic() || !w.is_uniform()) return;
+    for (const SpeciesCase& s : w.uniform.species) {
+        const double mass = s.density * s.mass * w.grid.x.length * w.grid.z.length,
+                     rms = std::sqrt(2 * history.largest("kinetic_" + s.name) / mass);
+        if (rms <= 1) continue;
+        summary.hint(
+            "particles without a Lorentz factor became faster than light: set "
+            "particles.relativistic = true, or lower the fields that drive them");
+        summary.result_at_most("rms_speed_" + s.name, rms, "c", 1, "nothing is faster than light");
+    }
+}
+
 /// The largest change of the energy, or where the scheme damps it the last one, in its window.
 inline void compare_energy(const Case& w, const common::History& history,
                            common::Summary& summary) {
     if (w.field.uses_mass_matrix()) compare_theorem(w, history, summary);
     compare_gauss(w, history, summary);
     compare_momentum(w, history, summary);
+    compare_speed(w, history, summary);
     const auto drift = history.column("energy_drift");
     const bool damps = w.field.theta > 0.5 && !w.leapfrog.chosen;
     const EnergyWindow window =

@@ -74,8 +74,9 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
             ? sentence("the sheet tears by itself, for the box is longer than 2 pi lambda = ",
                        tears, ", and has reconnected ", flux,
                        " B0 d_i: shorten time.end or grid.length_x, or raise harris.particles")
-            : "the mesh heats what it does not resolve, and few particles exchange heat: refine "
-              "the mesh, or raise harris.particles");
+            : "the mesh changes a sheet that it does not resolve, and the more particles there are "
+              "the more this stands out of their noise: refine the mesh; few particles exchange "
+              "heat: raise harris.particles");
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,

@@ -80,11 +80,17 @@ inline void compare_tail_at_rest(const Case& w, const common::History& history,
         }
     }
     const double heat = relativistic_heat(w);
-    summary.hint(heat > 0
-                     ? hot_sheet(heat)
+    summary.hint(heat > 0 ? hot_sheet(heat)
+                 : !grid.x.mirrors
+                     ? "no equilibrium ends at walls that conduct: set "
+                       "grid.boundary_x = \"reflecting\""
                      : "noise of few particles moves the field, and so does a sheet that tears "
-                       "by itself or whose currents at the ends do not balance: raise "
-                       "harris.particles, or shorten time.end");
+                       "by itself, whose currents at the ends do not balance, or that the mesh "
+                       "heats at its thin end: raise harris.particles, shorten time.end, refine "
+                       "the mesh" +
+                           std::string(w.leapfrog.chosen || w.field.uses_mass_matrix()
+                                           ? ""
+                                           : ", or set field.response = \"mass_matrix\""));
     seen.report("n0 F^2/cosh^2(h) + n_inf", "Lembege and Pellat 1982, made exact", summary);
     if (in_middle > 0)
         summary.result("density_in_the_middle", middle / expected_middle, "n of the equilibrium", 1,

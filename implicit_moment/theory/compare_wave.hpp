@@ -56,15 +56,18 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                "speeds of " +
                format(std::sqrt(heat)) + " c are heavier by some " + format(heat) +
                " of their mass: set particles.relativistic = false, or lower the temperatures";
-    if (over)
-        return "growth is over before it tells enough: lower the seed, and where that is below the "
-               "noise raise the particles per cell";
     const double damping =
         w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
     if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
         return "field.theta = " + format(w.field.theta) + " damps by some " + format(damping) +
                ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
                "time.dt";
+    if (over)
+        return "growth is over before it tells enough: lower the seed, and where that is below the "
+               "noise raise the particles per cell" +
+               (std::abs(theory.omega) * w.dt > 0.1
+                    ? std::string("; or lower time.dt, which changes it")
+                    : "");
     const double swing = swing_in_cells(w, std::abs(theory.omega));
     if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
         return "particles swing by " + format(swing) +
@@ -135,11 +138,9 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     if (std::fabs(growth) > (theory.of_scheme ? 2 * tolerance : 1e-3) * frequency)
         report("damping_over_theory",
                {seen.growth() / growth, seen.growth_error() / std::fabs(growth)});
-    else if (theory.of_scheme && seen.found)
+    else if (seen.found)
         summary.result("damping", damping, "omega_pi", 0 - growth,
                        std::min(1e-3, tolerance) * frequency, theory.source);
-    else if (seen.found)
-        summary.result_info("damping", damping, "omega_pi", theory.source);
 }
 
 }  // namespace implicit_moment

@@ -297,6 +297,10 @@ void refuse_langmuir(const Case& w, const std::string& name) {
     refuse_uncharged(w, wave);
     refuse_warm(w, wave);
     refuse_kinetic(w, name);
+    refuse(std::ranges::none_of(cold_waves(w), [](const ColdWave& one) { return one.along > 0.5; }),
+           wave,
+           ": no wave has its E along k, since the field of this mode is smoothed away: lower ",
+           "uniform.mode_x or mode_z, or set field.smoothing_passes = 0");
 }
 // The wave of the cold plasma with E along k; of two that are overdamped, the one that stays.
 Theory expect_langmuir(const Case& w) {
