@@ -65,7 +65,11 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
         const long other = rows[q].origin + j;
         const bool alike = nodes.is_fixed_x(other) == nodes.is_fixed_x(dof) &&
                            nodes.is_fixed_y(other) == nodes.is_fixed_y(dof);
-        return alike && mass(other) > times * mass(dof) ? other : -1L;
+        // Of bonded grains what counts is mass together, but each takes the mass of its own nodes.
+        return alike && mass(other) > times * mass(dof) &&
+                       nodes.sums[other].m > times * nodes.sums[dof].m
+                   ? other
+                   : -1L;
     };
     const DofConstraint none{dof, dof, -1, 0, row.lowest};
     DofConstraint found = none;
@@ -108,7 +112,8 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
     for (DofConstraint one : constraints) {
         NodeSums& from = nodes.sums[one.dof];
         // Others may have taken mass from it, or it may have become a ghost.
-        if (one.beyond >= 0 && !(mass(one.beyond) > 3 * mass(one.dof)))
+        if (one.beyond >= 0 &&
+            !(mass(one.beyond) > 3 * mass(one.dof) && nodes.sums[one.beyond].m > 3 * from.m))
             one.beyond = -1, one.along = 0;
         const auto add = [&](long dof, double part) {
             NodeSums& node = nodes.sums[dof];
@@ -187,7 +192,7 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows,
     const double heaviest = *std::max_element(most.begin(), most.end());
     std::array<std::vector<DofConstraint>, common::block_count> found;
     for_each_mass([&](int block, long r, long i, double m) {
-        if (!(m > 0 && m < light * heaviest)) return;
+        if (!(m > 0 && m < light * heaviest && nodes.sums[rows[r].origin + i].m > 0)) return;
         const DofConstraint one = constraint_of(rows, r, i, neighbors, nodes);
         if (m < light * mass(one.master)) found[block].push_back(one);
     });

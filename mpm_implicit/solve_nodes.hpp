@@ -227,11 +227,12 @@ class NodeSolver {
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
-        throw common::NumericalError(std::string("the velocities of ") + what +
-                                     " are not found in " + std::to_string(cg.iterations) +
-                                     " iterations: residual " + common::format(cg.residual) +
-                                     ", asked for " + common::format(scheme.tolerance) +
-                                     "; raise solver.max_iterations, or reduce time.alpha");
+        throw common::NumericalError(
+            std::string("the velocities of ") + what + " are not found in " +
+            std::to_string(cg.iterations) + " iterations: residual " + common::format(cg.residual) +
+            ", asked for " + common::format(scheme.tolerance) +
+            "; raise solver.max_iterations, reduce time.alpha" +
+            (scheme.consistent() ? ", or take method.mass = \"lumped\"" : ""));
     }
 
     GrainFactors factors_;

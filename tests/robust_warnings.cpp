@@ -380,6 +380,8 @@ grains bonded_bar.toml theory.compare=none grain.left.profile=none material.stee
 grains bonded_bar.toml theory.compare=none grain.left.profile=none material.steel.law=rigid grain.left.material=steel method.shape=gimp
     warning: method.shape = "gimp" sees a rigid grain that is bonded to another one from a cell
 grains bonded_bar.toml theory.compare=none method.shape=quadratic -> no warning
+mpm_explicit plate_holds.toml method.shape=quadratic
+    warning: method.shape = "quadratic" makes what a rigid grain presses too soft, by a tenth
 mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01
     warning: grains are pressed by 0.2375, above 0.1: particles of linear shapes that cross lines
 mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01 method.shape=gimp -> no warning
@@ -389,6 +391,11 @@ mpm_explicit plate_holds.toml theory.compare=none time.end=5 grain.top.stop=0 gr
 mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=10 method.theta=1 grain.top.velocity_y=-0.01 method.shape=linear
     warning: grains are strained by
     warning: method.volumes = "kept", and grains are strained by
+# Damping and viscosity that are too small to end it.
+mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.5 method.shape=gimp grain.top.velocity_y=-0.01 load.damping=1e-9 material.default.viscosity=1e-12
+    warning: method.theta = 0.5 damps nothing that rings, and in what is pressed noise may grow by a
+mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.5 method.shape=gimp grain.top.velocity_y=-0.01 load.damping=100
+    no warning
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0

@@ -346,7 +346,12 @@ inline void compare_cycle(const FinishedRun& run, common::Summary& summary) {
         };
         return at(end) - at(begin);
     };
-    summary.hint(press_hint);
+    const SchemeFacts& scheme = run.planned.scheme;
+    summary.hint((scheme.implicit && scheme.theta > 0.5
+                      ? "method.theta = " + format(scheme.theta) +
+                            " takes energy in every cycle: lower it, or time.alpha; "
+                      : std::string()) +
+                 press_hint);
     const double volume = press.width * press.height,
                  range = std::fabs(plate.swing_y) / press.height,
                  low = std::fabs(plate.velocity_y) * plate.stop / press.height;

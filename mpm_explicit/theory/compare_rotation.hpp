@@ -119,7 +119,9 @@ inline void judge_free_grains(const FinishedRun& run, common::Summary& summary) 
     const auto L = run.history.column("angular_momentum");
     for (const double now : L) off = std::fmax(off, std::fabs(now - L.front()));
     warn_of_travel(run, m, summary);
-    const double size = std::sqrt(2 * run.history.largest("kinetic") * squares);
+    const double kinetic = run.history.largest("kinetic") -
+                           energy_of_drift(run.history, run.all.particles),
+                 size = std::sqrt(2 * std::max(0.0, kinetic) * squares);
     const SchemeFacts& scheme = planned.scheme;
     summary.hint(!scheme.implicit ? "lumped masses and PIC lose it: set method.transfer = "
                                     "\"spin\", or refine the mesh"

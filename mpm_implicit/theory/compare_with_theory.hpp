@@ -158,6 +158,7 @@ inline void compare_compression(const theory::FinishedRun& run, common::Summary&
                                    {"bond", -1},
                                    {"viscous", -1},
                                    {"volume", -1},
+                                   {"pic", -1},
                                    {"plastic", 1}}) {
         const auto done = run.history.column(of);
         for (std::size_t n = 0; n < left.size(); ++n) left[n] += sign * done[n];
@@ -169,7 +170,7 @@ inline void compare_compression(const theory::FinishedRun& run, common::Summary&
     if (keeps_energy(run.parameters, run.planned.scheme))
         summary.result_at_most("energy_less_work", apart / most, "1", 1e-10,
                                "energy less work of plate, gravity, damping, friction, bonds, "
-                               "viscosity, flow and volumes, over the largest");
+                               "viscosity, flow, volumes and walls, over the largest");
     summary.result_info("plate_work", work.back(), "energy", "at the end");
     if (energy.back() > 0)
         summary.result_info("kinetic_share", run.history.column("kinetic").back() / energy.back(),
