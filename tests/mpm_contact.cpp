@@ -1049,6 +1049,39 @@ TEST_CASE("the outline moves by the gradient of the move of the particles") {
     }
 }
 
+TEST_CASE("nodes see a level side at its height up to the ends of the mesh") {
+    for (const bool ring : {true, false}) {
+        const auto check = [&](const auto& shape, const std::string& name) {
+            CAPTURE(ring);
+            CAPTURE(name);
+            Case c = halves(name);
+            c.problem.bonds.clear(), c.problem.periodic_x = ring;
+            if (!ring) c.problem.walls[x_low] = c.problem.walls[x_high] = "slip";
+            c.problem.grains = {box_at("low", 0.8, 0.41, 1.6, 0.4),
+                                box_at("high", 0.8, 0.81, 1.6, 0.4)};
+            Run run(c);
+            surface_to_grid(shape, run.particles(), run.nodes);
+            double most = 0;
+            long seen = 0;
+            for_each_dof(run.nodes, run.state.layout, [&](int, long i, long, std::size_t dof) {
+                const int at = run.nodes.surface_of(static_cast<long>(dof));
+                if (at < 0) return;
+                const SideSums& side = run.nodes.surface[0][static_cast<std::size_t>(at)];
+                most = worst({most, std::fabs(side.yy - 0.61 * side.y)});
+                // And in its column, but on a wall, where only half of what is around the node is there.
+                if (ring || (i > 0 && i < 32))
+                    most = worst({most, std::fabs(side.yx - 0.05 * real(i) * side.y)});
+                if (side.y != 0) ++seen;
+            });
+            CHECK(seen >= 64);
+            CHECK(most <= 1e-12);
+        };
+        check(LinearShape{}, "linear");
+        check(GimpShape{}, "gimp");
+        check(QuadraticShape{}, "quadratic");
+    }
+}
+
 TEST_CASE("the area of a bond is the length of the interface wherever it lies on the mesh") {
     for (const std::string& shape : shape_names) {
         for (const bool stacked : {false, true}) {
