@@ -227,6 +227,10 @@ TEST_CASE("how deep disks and boxes overlap is what geometry says") {
     CHECK(overlap_depth(letter_L(), disk(1.5, 1.5, 0.5)) == 0);
     CHECK(overlap_depth(letter_L(), disk(1.45, 1.5, 0.5)) == about(0.05));
     CHECK(overlap_depth(letter_L(), box(1.95, 1.45, 2, 1)) > 0.04);
+    // And in that of a small wedge, in whose first corner another one lies.
+    const Outline wedge = polygon({{1, 0}, {1, 1}, {0.5, 0.1}, {0, 0}});
+    CHECK(overlap_depth(wedge, box(0.7, 0.6, 0.05, 0.05)) == 0);
+    CHECK(overlap_depth(wedge, box(0.7, 0.4, 0.05, 0.05)) > 0.04);
     // Grains that only touch, to the round-off of their places.
     CHECK(overlap_depth(disk(0.1, 0, 0.1), disk(0.3, 0, 0.1)) == 0);
     CHECK(overlap_depth(disk(0, 0, 1), disk(2 - 0.5e-9, 0, 1)) == 0);
@@ -567,6 +571,22 @@ TEST_CASE("the disks of a random pack keep their gap and stay in the box") {
             }
         }
     }
+}
+
+TEST_CASE("a loose disk may lie anywhere in its box") {
+    RandomDisks pack;
+    pack.box = {-1, 1, 0, 2}, pack.radius_min = pack.radius_max = 0.4, pack.count = 1;
+    pack.loose = true;
+    Bounds all{0, 0, 1, 1};
+    for (pack.seed = 1; pack.seed <= 200; ++pack.seed) {
+        const Bounds one = bounds(random_disks(pack)[0].outline);
+        all = {std::min(all.x_low, one.x_low), std::max(all.x_high, one.x_high),
+               std::min(all.y_low, one.y_low), std::max(all.y_high, one.y_high)};
+    }
+    CHECK(std::fabs(all.x_low + 1) < 0.03);
+    CHECK(std::fabs(all.x_high - 1) < 0.03);
+    CHECK(std::fabs(all.y_low) < 0.03);
+    CHECK(std::fabs(all.y_high - 2) < 0.03);
 }
 
 TEST_CASE("every deposited disk rests on what was there before") {
