@@ -819,6 +819,12 @@ TEST_CASE("the lowest point of a parabola has the same gap wherever it is betwee
             // With the fall between columns, 1/8R, below the separation, both columns touch.
             CHECK(found == (radius > 3.3 && radius < 6.25 ? 1 : 0));
             CHECK(!lowest_point(columns, 2, 0, 1).exists);
+            // Where columns end beside it, what is on the other side says how round it is.
+            const std::vector<ContactColumn> last{
+                {columns[2].gap, -1, 1}, {columns[3].gap, 0, 2}, {columns[4].gap, 1, -1}};
+            const LowestPoint point = lowest_point(last, 0, separation, 1);
+            CHECK(point.exists == (found == 1));
+            if (point.exists) CHECK(point.gap == about(lowest).epsilon(1e-12));
             // Pressed so far that both columns touch, it is held at both, and no point is between them.
             const double nearer = std::max(columns[2].gap, columns[3].gap);
             for (ContactColumn& column : columns) column.gap -= nearer + 1e-9;
