@@ -654,6 +654,15 @@ TEST_CASE("energies of a time are those of the particles between the stresses of
     }
 }
 
+TEST_CASE("the center of mass is where a balance holds two unlike particles") {
+    Cloud cloud(mesh_of(4, 4, 1));
+    cloud.begin_grain(), cloud.add(1, 1), cloud.add(1, 2, 1), cloud.add(3, 3, 4), cloud.add(2, 2);
+    const auto [m, x, y] = center_of_mass(cloud.particles, 1, 3);
+    CHECK(m == 5);
+    CHECK(x == about(2.6).epsilon(1e-15));
+    CHECK(y == about(2.8).epsilon(1e-15));
+}
+
 TEST_CASE("every grain keeps its momentum without contact") {
     for (const std::string& shape : shape_names) {
         for (const double flip : {1.0, 0.9, 0.0}) {
