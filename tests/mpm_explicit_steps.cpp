@@ -775,6 +775,10 @@ TEST_CASE("what an upper frictional wall stops is in the last cell and not in th
         CHECK(cell(clamp.y(low + 2 * length)) == real(cells - 1));
         CHECK(clamp.x(low - 1) == low);
         CHECK(clamp.y(low + 0.5 * length) == low + 0.5 * length);
+        // There it stands, and may go away.
+        const double back = clamp.x(low - 1) - (low - 1);
+        CHECK(clamp.stopped(-3, back) == 0);
+        CHECK(clamp.stopped(3, back) == 3);
     }
 }
 
