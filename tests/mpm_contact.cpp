@@ -1250,6 +1250,18 @@ double overlap_of(const Case& c, double dx, double dy) {
 
 }  // namespace
 
+TEST_CASE("a pack has as many grains as its rows have or as it is asked for") {
+    Case c = case_on(32, 24, 1.6);
+    PackCase rows;
+    rows.kind = "hexagonal", rows.x = rows.y = 0.3, rows.columns = 3, rows.rows = 2;
+    PackCase loose;
+    loose.kind = "loose", loose.width = 1.6, loose.height = 1.2, loose.count = 7;
+    for (const auto& [pack, count] : {std::pair(rows, 3 + 2), std::pair(loose, 7)}) {
+        c.problem.packs = {pack};
+        CHECK(std::ssize(assemble(c.problem).grains) == count);
+    }
+}
+
 TEST_CASE("how deep grains are in each other is told wherever they are") {
     for (const double off : {0.0, 0.13, 0.25, 0.5, 0.77})
         for (const double degrees : {0.0, 20.0, 45.0, 77.0, 90.0, 200.0}) {
