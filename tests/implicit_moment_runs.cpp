@@ -331,7 +331,7 @@ TEST_CASE("momentum across a uniform field is kept together with that of the fie
     const std::string across =
         "implicit_moment/cases/moving_plasma.toml time.end=150 uniform.B_y=0.2 ";
     const Json kept = run("across", across + "time.dt=0.1");
-    CHECK(value(kept, "momentum_change") <= 1e-3);  // the field takes 7 % of it
+    CHECK(value(kept, "momentum_change") <= 0.02);  // the field takes 7 % of it
     CHECK(value(run("across_braked", across + "field.B_level=start"), "momentum_change") >= 0.05);
 }
 

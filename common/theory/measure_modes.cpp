@@ -102,13 +102,13 @@ void improve(const VectorXcd& z, Model& model) {
 }
 
 // The standard error of s of the first of these modes in noise like `rest`.
-//   J^+ R J^+H,  R_mn = C(m - n) the covariance of the noise, of lags below an eighth of the record;
-//   not below that of white noise, R = C(0)
+//   J^+ R J^+H,  R_mn = C(m - n) the covariance of the noise, of lags below a tenth of the record, whole up to
+//   those that averaging makes, 2; not below that of white noise, R = C(0)
 // in: slopes J by all c and then all s of a model
 double error_of_first(const MatrixXcd& J, const std::vector<Index>& modes, const VectorXcd& rest,
                       double freedom) {
     const Index count = Index(modes.size()), samples = J.rows(),
-                lags = std::max<Index>(4, samples / 8);
+                lags = std::max<Index>(4, samples / 10);
     MatrixXcd slopes(samples, 2 * count);
     for (Index j = 0; j < count; ++j) {
         slopes.col(j) = J.col(modes[std::size_t(j)]);
@@ -129,7 +129,7 @@ double error_of_first(const MatrixXcd& J, const std::vector<Index>& modes, const
     for (Index k = 1; k < lags; ++k) {
         const Complex C = rest.head(samples - k).dot(rest.tail(samples - k)),
                       turned = row.tail(samples - k).dot(row.head(samples - k));
-        squares += 2 * (1 - double(k) / double(lags)) * (C * turned).real();
+        squares += 2 * std::min(1.0, 1 - double(k - 2) / double(lags)) * (C * turned).real();
     }
     return std::sqrt(std::max(squares, white) / freedom);
 }
@@ -137,7 +137,8 @@ double error_of_first(const MatrixXcd& J, const std::vector<Index>& modes, const
 // The modes of a model, with errors and evidence.
 ModeList modes_of(const VectorXcd& z, const Model& model, double dt) {
     const Index order = model.s.size(), samples = z.size();
-    const double freedom = double(std::max<Index>(1, samples - 2 * order));
+    // Averaging shares a third of its noise with the next sample, so that about half of them count.
+    const double freedom = double(std::max<Index>(1, samples - 4 * order));
     const double energy = z.squaredNorm(), floor = 1e-30 * energy;
     const MatrixXcd A = model.columns(samples), parts = A * model.c.asDiagonal();
     const VectorXcd difference = z - A * model.c;
