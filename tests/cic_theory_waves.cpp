@@ -9,6 +9,7 @@
 #include "cic/setup/describe_case.hpp"
 #include "tests/support/any_summary.hpp"
 #include "tests/support/folder_of_test.hpp"
+#include "tests/support/longitudinal_wave.hpp"
 
 namespace {
 
@@ -220,7 +221,7 @@ TEST_CASE("between along and across the least damped wave goes over from Landau 
     };
     const common::PlasmaSpecies plain{
         .density = 0.25 / pi, .charge = -1, .mass = 1, .temperature_along = 0.16};
-    const Complex landau = common::fastest_growing_longitudinal({&plain, 1}, 1).omega;
+    const Complex landau = facts::fastest_growing_longitudinal({&plain, 1}, 1).omega;
     CHECK(std::abs(angle(0).omega - landau) <= 1e-9);
     CHECK(angle(60).omega.imag() < 0);
     CHECK(angle(60).omega.real() > landau.real());

@@ -12,6 +12,7 @@
 #include "common/theory/plasma_dispersion.hpp"
 #include "implicit_moment/theory/theta_light_wave.hpp"
 #include "implicit_moment/theory/transverse_dispersion.hpp"
+#include "tests/support/longitudinal_wave.hpp"
 
 namespace {
 
@@ -146,7 +147,7 @@ TEST_CASE("Landau damping has the published frequencies and rates") {
     plasma.temperature_along = 1.0;
     for (const auto& row : table) {
         const double k = row[0];
-        const auto root = common::fastest_growing_longitudinal({&plasma, 1}, k);
+        const auto root = facts::fastest_growing_longitudinal({&plasma, 1}, k);
         CHECK(root.found);
         CHECK(std::abs(root.omega.real() - row[1]) <= 1e-6);
         CHECK(std::abs(root.omega.imag() - row[2]) <= 1e-6);
@@ -167,15 +168,15 @@ TEST_CASE("cold beams grow as the two-stream formula says and stop where it ends
     beams[1].drift = -v_0;
     for (const double a : {0.1, 0.3, 0.5, std::sqrt(3.0 / 8.0), 0.8, 0.95}) {
         const double exact = std::sqrt(std::sqrt(2.0 * a * a + 0.25) - a * a - 0.5);
-        const auto root = common::fastest_growing_longitudinal(beams, a / v_0);
+        const auto root = facts::fastest_growing_longitudinal(beams, a / v_0);
         CHECK(root.found);
         CHECK(std::abs(root.omega.imag() - exact) <= 1e-12);
         CHECK(std::abs(root.omega.real()) <= 1e-12);
     }
-    const auto fastest = common::fastest_growing_longitudinal(beams, std::sqrt(3.0 / 8.0));
+    const auto fastest = facts::fastest_growing_longitudinal(beams, std::sqrt(3.0 / 8.0));
     CHECK(std::abs(fastest.omega.imag() - 1.0 / std::sqrt(8.0)) <= 1e-12);
     for (const double a : {1.05, 1.5, 3.0}) {
-        const auto root = common::fastest_growing_longitudinal(beams, a / v_0);
+        const auto root = facts::fastest_growing_longitudinal(beams, a / v_0);
         CHECK(root.found);
         CHECK(root.omega.imag() <= 1e-12);
     }
@@ -189,7 +190,7 @@ TEST_CASE("warm beams grow slower and approach the cold rate") {
         beams[0].drift = 0.2;
         beams[1].drift = -0.2;
         for (auto& beam : beams) beam.temperature_along = row[0] * row[0];
-        const auto root = common::fastest_growing_longitudinal(beams, 2.0 * pi / 2.053);
+        const auto root = facts::fastest_growing_longitudinal(beams, 2.0 * pi / 2.053);
         CHECK(root.found);
         CHECK(std::abs(root.omega.imag() - row[1]) <= 2e-6);
     }
@@ -201,7 +202,7 @@ TEST_CASE("the Buneman root solves its polynomial and has the limiting rate") {
         std::vector<PlasmaSpecies> plasma{electrons(1.0), electrons(1.0)};
         plasma[0].drift = 1.0;
         plasma[1].mass = M;
-        const auto root = common::fastest_growing_longitudinal(plasma, 1.0);
+        const auto root = facts::fastest_growing_longitudinal(plasma, 1.0);
         const Complex w = root.omega;
         CHECK(root.found);
         CHECK(std::abs(w * w * (w - 1.0) * (w - 1.0) - (w - 1.0) * (w - 1.0) / M - w * w) <= 1e-13);

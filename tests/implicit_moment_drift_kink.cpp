@@ -12,6 +12,7 @@
 #include "common/theory/kinetic_dispersion.hpp"
 #include "implicit_moment/theory/drift_kink.hpp"
 #include "implicit_moment/theory/magnetized_plasma.hpp"
+#include "tests/support/longitudinal_wave.hpp"
 
 namespace {
 
@@ -186,7 +187,7 @@ TEST_CASE("two streams grow and waves damp as in Vlasov's theory") {
             const double density = 0.5 / (4 * std::numbers::pi);  // omega_s^2 = 1/2
             species.push_back({density, 1, 1, sign * drift, v * v, v * v, 0});
         }
-        const Complex exact = common::fastest_growing_longitudinal(species, k).omega;
+        const Complex exact = facts::fastest_growing_longitudinal(species, k).omega;
         CHECK(std::abs(wave_near(plasma, exact).omega - exact) <= 2e-5);
     }
 }

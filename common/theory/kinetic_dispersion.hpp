@@ -168,11 +168,4 @@ inline std::vector<Complex> fan_of_guesses(std::span<const PlasmaSpecies> plasma
     return guesses;
 }
 
-/// The fastest growing (or least damped) longitudinal wave of wave number k.
-inline DispersionRoot fastest_growing_longitudinal(std::span<const PlasmaSpecies> plasma,
-                                                   double k) {
-    const auto D = [&](Complex omega) { return longitudinal_dispersion(plasma, k, omega); };
-    return fastest_growing_root(D, fan_of_guesses(plasma, k));
-}
-
 }  // namespace common

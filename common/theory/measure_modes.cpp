@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "common/run/parameters.hpp"
@@ -329,24 +330,20 @@ Match of_both_directions(Match match, const std::vector<Mode>& modes, double siz
     return match;
 }
 
-// One sample in `block`: the mean over a block of the mean over a block of the mean over a block. A single mean
-// lets a seventh of a wave through that is eight times as fast as the one looked for, and the samples fold it
-// back to where that one is; three let a three-hundredth through.
+// One sample in `block`, the mean of a mean of a mean over a block. One mean lets a seventh of a wave through that is
+// eight times as fast as the one looked for, and samples fold it back to where that one is; three a 300th.
 std::vector<Complex> averaged(std::span<const Complex> z, Rows rows, long block) {
     std::vector<double> weights{1};
     for (int mean = 0; mean < 3; ++mean) {
         std::vector<double> wider(weights.size() + std::size_t(block - 1));
         for (std::size_t n = 0; n < weights.size(); ++n)
-            for (long m = 0; m < block; ++m)
-                wider[n + std::size_t(m)] += weights[n] / double(block);
+            for (long m = 0; m < block; ++m) wider[n + m] += weights[n] / double(block);
         weights = wider;
     }
     std::vector<Complex> result;
-    for (long n = rows.begin; n + long(weights.size()) <= rows.end; n += block) {
-        Complex sum = 0;
-        for (std::size_t m = 0; m < weights.size(); ++m) sum += weights[m] * z[std::size_t(n) + m];
-        result.push_back(sum);
-    }
+    for (long n = rows.begin; n + long(weights.size()) <= rows.end; n += block)
+        result.push_back(
+            std::inner_product(weights.begin(), weights.end(), z.begin() + n, Complex()));
     return result;
 }
 

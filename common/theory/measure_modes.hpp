@@ -74,8 +74,7 @@ struct MeasuredMode {
 /// Measures the mode that theory expects.
 ///   window: from search.begin to search.end; what grows ends before, where it comes to below_maximum
 ///           of its largest value, and what decays where noise is left; of a long record as many
-///           periods, or 8 e-foldings, as tell most. Many samples per period are averaged
-///           to fewer, which changes no omega
+///           periods, or 8 e-foldings, as tell most; many samples per period averaged to fewer
 ///   answer: of the modes with evidence the one nearest to a root of theory, and the mean of its two
 ///           directions; one without a turn and without an e-folding in the window is what stays at
 ///           rest, and none
