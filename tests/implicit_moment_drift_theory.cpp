@@ -308,10 +308,10 @@ TEST_CASE("the sheet of a published moment model grows as in an independent prog
 
 TEST_CASE("local waves as fast as electrons gyrate are none of the theory") {
     const CurrentSheet pairs{1, 1, 1, 20, 0};
-    const LocalWave fast = local_root(pairs, 1.6, 2), w = fastest_over_z(pairs, 2);
+    const LocalWave fast = local_root(pairs, 1.6, 2);
     CHECK(std::hypot(fast.omega, fast.gamma) > 0.5 * std::tanh(1.6));
-    CHECK(std::hypot(w.omega, w.gamma) < 0.5 * std::tanh(w.z));
-    CHECK(w.gamma < fast.gamma);
+    CHECK(fast.gamma > 0);
+    CHECK(!(fastest_over_z(pairs, 2).gamma > 0));
 }
 
 TEST_CASE("a resting background of a tenth stops the wave at the edge but not inside") {

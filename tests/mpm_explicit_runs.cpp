@@ -112,6 +112,13 @@ TEST_CASE("no frame takes a verdict on energy away" * doctest::description("phys
     CHECK(std::fabs(moving.value("energy_change") / lost - 1) <= 0.2);
 }
 
+TEST_CASE("grains that only travel gain and lose nothing" * doctest::description("physics")) {
+    const Run r = run("travel", "rebound",
+                      "theory.compare=none grid.periodic_x=true grain.right.velocity_x=0.1");
+    for (const char* name : {"energy_gain", "energy_lost"})
+        CHECK(r.summary["results"][name]["verdict"] == "PASS");
+}
+
 TEST_CASE("disks that meet anew are judged by their first contact" *
           doctest::description("physics")) {
     const Run r = run("twice", "rebound", "method.crossing=0.5 grid.periodic_x=true time.end=4");

@@ -629,3 +629,35 @@ TEST_CASE(
     for (const char* cure : {" time.alpha=10", " time.alpha=64 load.rise=10"})
         CHECK(judged(dropped + cure, "PASS")["value"].get<double>() <= 0.25);
 }
+
+TEST_CASE("stress that alternates within cells of what is pressed is said after the run" *
+          doctest::description("physics")) {
+    const std::string folder = facts::folder_of_test(), words = folder + "/words",
+                      pressed = std::string(BUILD_FOLDER) +
+                                "/mpm_implicit mpm_implicit/cases/billet.toml theory.compare=none "
+                                "time.alpha=0.5 time.end=4 method.shape=gimp load.damping=5 "
+                                "grain.top.velocity_y=-0.01 --force --quiet --out " +
+                                folder + "/pressed method.theta=";
+    std::filesystem::create_directories(folder);
+    for (const char* theta : {"0.5", "0.6"}) {
+        REQUIRE(std::system((pressed + theta + " 2> " + words).c_str()) == 0);
+        std::ifstream file(words);
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        const bool says = text.find("stress that alternates within cells") != std::string::npos;
+        CHECK(says == (std::string(theta) == "0.5"));
+    }
+}
+
+TEST_CASE("disks that graze before they meet are judged by the whole contact" *
+          doctest::description("physics")) {
+    const Run r = run("grazing", "mpm_implicit/cases/rebound.toml time.alpha=0.05 time.end=1.2");
+    for (const char* name : {"contact_lasts", "rebound"})
+        CHECK(r.summary["results"][name]["verdict"] == "PASS");
+}
+
+TEST_CASE("what walls stop is part of the work of a plate" * doctest::description("physics")) {
+    const Run r = run(
+        "stopped", "mpm_implicit/cases/compressed.toml grain.plate.velocity_y=-0.02 time.end=1.5");
+    CHECK(std::fabs(r.column("pic").back()) >= 1e-3);
+    CHECK(r.summary["results"]["energy_less_work"]["verdict"] == "PASS");
+}

@@ -381,7 +381,7 @@ grains bonded_bar.toml theory.compare=none grain.left.profile=none material.stee
     warning: method.shape = "gimp" sees a rigid grain that is bonded to another one from a cell
 grains bonded_bar.toml theory.compare=none method.shape=quadratic -> no warning
 mpm_explicit plate_holds.toml method.shape=quadratic
-    warning: method.shape = "quadratic" makes what a rigid grain presses too soft, by a tenth
+    warning: method.shape = "quadratic" makes flat grains that a rigid one presses too soft
 mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01
     warning: grains are pressed by 0.2375, above 0.1: particles of linear shapes that cross lines
 mpm_explicit plate_holds.toml theory.compare=none time.end=10 grain.top.stop=0 grain.top.velocity_y=-0.01 method.shape=gimp -> no warning
@@ -398,6 +398,7 @@ mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.thet
     no warning
 mpm_implicit rebound.toml -> no warning
 mpm_implicit rebound.toml time.alpha=15 time.end=6 -> no warning
+mpm_implicit rebound.toml grid.periodic_x=true grain.left.velocity_x=1.1 grain.right.velocity_x=0.9 -> no warning
 mpm_implicit rebound.toml time.alpha=25 time.end=10 output.particles_interval=0
     warning: |v| dt/h = 0.6557 is above 0.5: grains can pass through each other's surfaces
     before they are seen to touch; reduce time.alpha
@@ -474,7 +475,7 @@ explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 gr
 explicit_em beam species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded with u = gamma v above c
 implicit_moment e_cross_b.toml uniform.E_x=0.3 uniform.B_y=0.2
-    warning: uniform.E across B is 1.5 of B
+    warning: uniform.E across B is 1.5 of B, and the drift E x B would be that many times as fast
 # What another set-up reads.
 plasmas uniform.B_x=0.1 current_sheet.drift=2
     warning: [current_sheet] has no effect with plasma.setup = "harris": take out what is there

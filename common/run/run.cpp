@@ -379,6 +379,8 @@ int Run::finish(long step, double count) {
         if (std::fflush(stdout) != 0 && errno != EPIPE)
             shortfalls.push_back("no results on standard output: see " + path("summary.json"));
     }
+    for (const std::string& warning : summary.late_warnings)
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
     for (const std::string& sentence : shortfalls)
         std::fprintf(stderr, "%s: %s\n", info_.program.c_str(), sentence.c_str());
     if (status == 3 || (status > 128 && command_.quiet))

@@ -87,7 +87,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
     refuse_before_start(command, prepared.steps, prepared.bytes);
     largest_over_ranks(0);
     Run& run = holder.emplace(info, command, table);
-    for (const std::string& warning : prepared.warnings) run.summary.warning(warning);
+    run.summary.warnings = prepared.warnings;
     run.schedule = schedule;
     return true;
 }

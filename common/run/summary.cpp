@@ -153,7 +153,8 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
     }
     json["performance"] = Json::object();
     for (const Entry& entry : performance_) put(json["performance"], entry.name, entry.value.value);
-    json["warnings"] = warnings_;
+    json["warnings"] = warnings;
+    for (const std::string& late : late_warnings) json["warnings"].push_back(late);
 
     OutputFile file(path);
     file.text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

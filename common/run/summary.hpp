@@ -59,8 +59,8 @@ class Summary {
     void performance(const std::string& name, double value) {
         performance_.push_back({name, "", "", value});
     }
-    /// A sentence that was printed as a warning before the run.
-    void warning(const std::string& text) { warnings_.push_back(text); }
+    /// Warnings that were printed before the run, and those that are printed after it.
+    std::vector<std::string> warnings, late_warnings;
 
     /// A result that is named here and falls short has the verdict EXPECTED FAILURE.
     Expectation expectation;
@@ -107,7 +107,6 @@ class Summary {
     const char* verdict(const Entry& entry) const;
     std::string hint_;
     std::vector<Entry> results_, conservation_, performance_;
-    std::vector<std::string> warnings_;
 };
 
 }  // namespace common

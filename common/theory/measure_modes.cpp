@@ -401,11 +401,6 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
     return rows;
 }
 
-std::string text_of(const Complex& omega) {
-    return format(omega.real()) + (omega.imag() < 0 ? " - " : " + ") +
-           format(std::abs(omega.imag())) + " i";
-}
-
 }  // namespace
 
 MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex> z,
@@ -479,7 +474,9 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
                                    std::abs(mode.omega + std::conj(match.mode.omega))) <
                           std::abs(match.mode.error) + 1e-6 * wanted.size;
         if (!same && mode.share > 1e-3)
-            others += (others.empty() ? "" : ", ") + text_of(mode.omega);
+            others += (others.empty() ? "" : ", ") + format(mode.omega.real()) +
+                      (mode.omega.imag() < 0 ? " - " : " + ") +
+                      format(std::abs(mode.omega.imag())) + " i";
     }
     if (!others.empty()) result.window += "; also seen: omega = " + others;
     const VectorXcd samples = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));

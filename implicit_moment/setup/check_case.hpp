@@ -343,9 +343,10 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
     const UniformCase& u = w.uniform;
     const Eigen::Vector3d E(u.E_x, u.E_y, u.E_z), B(u.B_x, u.B_y, u.B_z);
     const double fast = B.norm() > 0 ? E.cross(B).norm() / B.squaredNorm() : 0;
-    warn(warnings, fast >= 1, "uniform.E across B is ", fast,
-         " of B: at 1 nothing drifts with E x B any more, and particles run away: lower it, or "
-         "raise uniform.B");
+    warn(warnings, fast >= 1, "uniform.E across B is ", fast, " of B, and the drift E x B ",
+         w.is_relativistic() ? "needs less than 1: particles run away"
+                             : "would be that many times as fast as light",
+         "; lower it, or raise uniform.B");
     double charge = 0;
     for (const SpeciesCase& s : u.species) charge += s.density * s.charge;
     warn(warnings, std::fabs(charge) > 1e-9 && !(w.grid.x.periodic && w.grid.z.periodic),

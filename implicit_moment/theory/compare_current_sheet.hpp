@@ -98,15 +98,15 @@ inline void compare_current_sheet(const Case& w, const common::History& history,
 
     // Fit its growth up to there.
     const LocalWave theory = fastest_over_z(theory_sheet(w.current_sheet), k);
-    summary.result_info("theory_growth", theory.gamma, "Omega_ci", local);
-    summary.result_info("theory_omega", theory.omega, "Omega_ci", local);
-    summary.result_info("theory_z", theory.z, "L", local);
     if (!(theory.gamma > 0))
         return summary.not_measured(
             "growth_over_theory",
             "local theory, of waves much slower than electrons gyrate, has no "
             "growth for the dominant mode: raise current_sheet.drift or "
             "mass_ratio, or refine the mesh along x");
+    summary.result_info("theory_growth", theory.gamma, "Omega_ci", local);
+    summary.result_info("theory_omega", theory.omega, "Omega_ci", local);
+    summary.result_info("theory_z", theory.z, "L", local);
     const EdgeWave wave(history, dominant);
     common::ModeSearch search{.expected = {{theory.omega, theory.gamma}},
                               .begin = 0,

@@ -200,14 +200,12 @@ LocalWave fastest_wave(const Waves& wave, double low, double high) {
 inline constexpr double lowest_z = 0.2, highest_z = 4.0;
 
 /// The fastest growing local wave of wave number k, wherever it is.
-/// out:    not found where all are as fast as the gyration of electrons, which theory takes for much faster
+/// out:    none where it is half as fast as electrons gyrate, which theory takes for much faster
 inline LocalWave fastest_over_z(const CurrentSheet& sheet, double k) {
-    const auto slow_wave = [&](double z) {
-        const LocalWave wave = local_root(sheet, z, k);
-        const double Omega_ce = sheet.mass_ratio * std::tanh(z);  // over Omega_ci
-        return std::hypot(wave.omega, wave.gamma) < 0.5 * Omega_ce ? wave : LocalWave{z, k};
-    };
-    return fastest_wave(slow_wave, lowest_z, highest_z);
+    const LocalWave wave =
+        fastest_wave([&](double z) { return local_root(sheet, z, k); }, lowest_z, highest_z);
+    const double Omega_ce = sheet.mass_ratio * std::tanh(wave.z);  // over Omega_ci
+    return std::hypot(wave.omega, wave.gamma) < 0.5 * Omega_ce ? wave : LocalWave{};
 }
 
 }  // namespace implicit_moment

@@ -81,7 +81,7 @@ class LeapfrogRecorder {
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
         recorder_.compare_with_theory(step, state.assembly, run);
-        judge_energy(theory::energy_of_drift(run.history, state.assembly.particles), run);
+        judge_energy(theory::energy_of_drift(run.history, state.assembly), run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_remap_error", run.history.largest("remap"), "energy");
     }

@@ -17,6 +17,7 @@ namespace mpm {
 /// What follows from a case, in its own units.
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
+    double impact_speed = 0;            // the same without a common velocity along a periodic x
     double dt = 0, shortening = 1;      // of the step, by viscosity
     long steps = 0, particles = 0, grains = 0;
     double nodes = 0;     // of all grains, about
@@ -38,17 +39,23 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const double side = mesh.h / double(problem.per_side);
     double lightest = 1e300, shortened = 0;
     s.thinnest = 1e300;
+    double slowest = 1e300, fastest_x = -1e300;
+    for (const PlannedGrain& plan : plans)
+        slowest = std::min(slowest, plan.from.velocity_x),
+        fastest_x = std::max(fastest_x, plan.from.velocity_x);
+    const double shared = mesh.periodic_x ? 0.5 * (slowest + fastest_x) : 0;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
         const double c = sound_speed(material);
         s.sound_speed = std::max(s.sound_speed, c);
         shortened = std::max(shortened, is_explicit ? c * viscous_shortening(material, mesh.h) : c);
-        s.speed = std::max(
-            s.speed, std::hypot(from.velocity_x, from.velocity_y) + std::fabs(from.amplitude) +
-                         std::fabs(from.spin) * plan.outline.radius +
-                         std::numbers::pi / from.period * std::hypot(from.swing_x, from.swing_y) +
-                         fastest(plan.table));
+        const double own = std::fabs(from.amplitude) + std::fabs(from.spin) * plan.outline.radius +
+                           std::numbers::pi / from.period * std::hypot(from.swing_x, from.swing_y) +
+                           fastest(plan.table);
+        s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) + own);
+        s.impact_speed =
+            std::max(s.impact_speed, std::hypot(from.velocity_x - shared, from.velocity_y) + own);
         s.particles += std::lround(area(plan.outline) / (side * side));
         lightest = std::min(lightest, material.density * side * side);
         s.thinnest = std::min(s.thinnest, thinnest(plan.outline));

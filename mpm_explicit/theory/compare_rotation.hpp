@@ -92,7 +92,7 @@ inline void warn_of_travel(const FinishedRun& run, double m, common::Summary& su
     const double cells = std::hypot(p_x.front(), p_y.front()) / m * pressed /
                          run.planned.parameters.problem.mesh().h;
     if (cells > 0.5)
-        summary.warning(
+        summary.late_warnings.push_back(
             "the grains travel " + format(cells) +
             " cells while they press, and a rebound depends on that: flat bars keep 0.92 "
             "of their velocity where they are and half of it over some cells; let their "
@@ -119,8 +119,7 @@ inline void judge_free_grains(const FinishedRun& run, common::Summary& summary) 
     const auto L = run.history.column("angular_momentum");
     for (const double now : L) off = std::fmax(off, std::fabs(now - L.front()));
     warn_of_travel(run, m, summary);
-    const double kinetic = run.history.largest("kinetic") -
-                           energy_of_drift(run.history, run.all.particles),
+    const double kinetic = run.history.largest("kinetic") - energy_of_drift(run.history, run.all),
                  size = std::sqrt(2 * std::max(0.0, kinetic) * squares);
     const SchemeFacts& scheme = planned.scheme;
     summary.hint(!scheme.implicit ? "lumped masses and PIC lose it: set method.transfer = "

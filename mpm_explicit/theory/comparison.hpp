@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <string>
 #include <tuple>
@@ -90,14 +89,17 @@ struct PlannedCase {
 };
 
 /// The energy that the center of mass has and keeps, which no verdict on energy counts: none where anything but the
-/// grains themselves changes their momentum.
-inline double energy_of_drift(const common::History& history, const Particles& particles) {
+/// grains themselves changes their momentum, or where there is hardly another motion.
+inline double energy_of_drift(const common::History& history, const Assembly& all) {
     const auto x = history.column("momentum_x"), y = history.column("momentum_y");
-    const double m = std::accumulate(particles.m_p.begin(), particles.m_p.end(), 0.0),
-                 allowed = 1e-6 * std::sqrt(2 * m * history.largest("kinetic"));
+    double m = 0;
+    for (const Grain& grain : all.grains)
+        for (long p = grain.begin; p < grain.end && !grain.rigid; ++p) m += all.particles.m_p[p];
+    const double allowed = 1e-6 * std::sqrt(2 * m * history.largest("kinetic"));
     for (std::size_t n = 0; n < x.size(); ++n)
         if (std::hypot(x[n] - x[0], y[n] - y[0]) > allowed) return 0;
-    return m > 0 && !x.empty() ? 0.5 * (x[0] * x[0] + y[0] * y[0]) / m : 0;
+    const double drift = m > 0 && !x.empty() ? 0.5 * (x[0] * x[0] + y[0] * y[0]) / m : 0;
+    return drift < (1 - 1e-4) * history.first("energy") ? drift : 0;
 }
 
 /// A run that has ended.

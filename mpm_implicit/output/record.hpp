@@ -9,6 +9,7 @@
 #include "mpm_explicit/output/record_grains.hpp"
 #include "mpm_implicit/state.hpp"
 #include "mpm_implicit/theory/compare_with_theory.hpp"
+#include "mpm_implicit/theory/uneven_stress.hpp"
 
 namespace mpm_implicit {
 
@@ -40,7 +41,8 @@ class ThetaRecorder {
    public:
     ThetaRecorder(const Case& parameters, const ThetaScheme& scheme, const Scales& scales,
                   const State& state, common::History& history)
-        : scheme_(scheme),
+        : parameters_(parameters),
+          scheme_(scheme),
           scales_(scales),
           recorder_(parameters, facts_of(parameters, scheme), scales, state.assembly, comparisons,
                     "residual") {
@@ -70,6 +72,7 @@ class ThetaRecorder {
         const Budget& b = state.budget;
         compare_energy_theorem(run.history, scheme_, b, run.summary);
         recorder_.compare_with_theory(step, state.assembly, run);
+        warn_of_noise(parameters_, scheme_, scales_.dt, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);
         run.summary.conservation("largest_residual_of_a_step", b.largest_residual, "energy");
         const double steps = double(std::max(1L, step));
@@ -92,6 +95,7 @@ class ThetaRecorder {
         return row;
     }
 
+    const Case& parameters_;
     const ThetaScheme& scheme_;
     const Scales& scales_;
     Recorder recorder_;

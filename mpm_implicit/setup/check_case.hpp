@@ -53,8 +53,11 @@ inline NoiseGrowth growth_of_noise(const Case& parameters, const Scales& scales)
         strain = std::max(strain, 1 / std::pow(sound_speed(m), 2));
     }
     if (strain == 0) return {};
-    strain *= std::fabs(problem.gravity_x) * (all.x_high - all.x_low) +
-              std::fabs(problem.gravity_y) * (all.y_high - all.y_low);
+    // Along a plate they slide, and around a ring they fall.
+    const double g_x = std::fabs(problem.gravity_x), g_y = std::fabs(problem.gravity_y);
+    strain *= g_y >= g_x            ? g_y * (all.y_high - all.y_low)
+              : !problem.periodic_x ? g_x * (all.x_high - all.x_low)
+                                    : 0;
     const double rate = 0.37 * scales.sound_speed / problem.mesh().h *
                         std::pow(std::max(1.0, parameters.alpha), -0.75),
                  left = std::max(0.0, 1 - least_viscous / (0.1 * scales.dt));
