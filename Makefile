@@ -123,13 +123,13 @@ The particle-in-cell family in running code
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, forty minutes; resumable
-  make test              the facts, at most ten minutes   (make test ARGS='-R gmres': some of them)
+  make test              the facts, half an hour on two cores, most of it compiling   (make test ARGS='-R gmres': some)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
   make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
   make exercises         the exercises of the lecture notes, each with its title and the time of its runs
   make exercise E=1-3    its question, its runs, and whether they give what is expected
-                         (with ANSWER=0.9239: is the answer right?)
+                         (with ANSWER=0.5: is the answer right?)
   make bench             particle-steps per second on 1 and 2 threads, and where the time goes; MPI=1: on 1 and 2 ranks
   make web               the programs in the browser, a page per case, in out/web/ (packages: make deps-web);
                          CASES='two_stream': one of them

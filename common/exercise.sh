@@ -111,7 +111,7 @@ asks_for() { awk '/^```exercise/ { exit } /^Your answer:/' "$question" | grep -q
 # The answer without blanks around it; what is no number is refused.
 number_of_answer() {
     value=$(printf '%s' "$1" | tr '\n' ' ' | sed 's/^[[:space:]]*//; s/[[:space:]]*$//')
-    [ -n "$value" ] || stop "the answer is empty: give a number, like ANSWER=0.9239"
+    [ -n "$value" ] || stop "the answer is empty: give a number, like ANSWER=0.5"
     case $value in
     *%*)
         asks_for 'per cent' && stop "the answer is asked for in per cent: write 92 for 92 %"
@@ -125,7 +125,7 @@ number_of_answer() {
         ;;
     esac
     printf '%s\n' "$value" | grep -qE "$number" ||
-        stop "'$value' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
+        stop "'$value' is no number: a number looks like 0.5, .5 or 5e-1"
 }
 
 # ---- the runs and their numbers --------------------------------------------------------------------

@@ -29,7 +29,7 @@ picture_of() {  # folder of a run: the name of its picture, which is copied besi
 }
 
 body() {
-    find "$runs" -mindepth 3 -name summary.json ! -path "$runs/exercises/*" | sort > "$scratch/runs"
+    find "$runs" -mindepth 2 -name summary.json ! -path "$runs/exercises/*" | sort > "$scratch/runs"
     echo '<h1>Validation</h1>'
     if [ ! -s "$scratch/runs" ]; then
         echo '<p>There are no finished runs in <code>out/</code>. Make some, for example <code>make cic_landau fig09</code>, or all: <code>make figures</code>.</p>'
@@ -45,7 +45,7 @@ body() {
         gsub(/\\"/, "\"", text); gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); gsub(/>/, "\\&gt;", text)
         return text
     }
-    function short(number) { return number == "" ? "" : number ~ /^[-+0-9.]/ ? sprintf("%.5g", number) : escaped(number) }
+    function short(number) { return number == "" || number == "null" ? "" : number ~ /^[-+0-9.]/ ? sprintf("%.5g", number) : escaped(number) }
     function cell(text) { return "<td>" text "</td>" }
     function flush(    i, name, row, expected, verdict, rest) {
         if (folder == "") return

@@ -396,9 +396,11 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
         history.columns({{{"energy", ""},
                           {"energy_drift", "1"},
                           {"energy_residual", "1"},
-                          {"gauss_residual", "1"}},
+                          {"gauss_residual", "1"},
+                          {"kinetic_ions", "energy"},
+                          {"kinetic_electrons", "energy"}},
                          {}});
-        for (const double one : drift) history.row(std::vector<double>{1, one, what_else, 0});
+        for (const double one : drift) history.row(std::vector<double>{1, one, what_else, 0, 0, 0});
         common::Summary summary;
         compare_energy(of, history, summary);
         REQUIRE(summary.has_verdict());

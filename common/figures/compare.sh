@@ -13,7 +13,7 @@ done | awk '
         if (!($2 in seen)) order[++count] = $2
         seen[$2] = 1
         which = $1
-        value[which, $2] = sprintf("%.6g", $3) ($4 == "-" ? "" : "±" sprintf("%.2g", $4))
+        value[which, $2] = $3 == "null" ? "-" : sprintf("%.6g", $3) ($4 == "-" ? "" : "±" sprintf("%.2g", $4))
         verdict[which, $2] = $7
         if ($5 != "-") expected[which, $2] = $5 ~ /^[<>]/ ? substr($5, 1, 1) sprintf("%.4g", substr($5, 2)) : sprintf("%.4g", $5) ($6 == "-" ? "" : "±" sprintf("%.2g", $6))
     }

@@ -34,14 +34,14 @@ answer 4b-6 -6 1 "not right; too small"
 
 answer 1-3 0,9239 2 "'0,9239' is no number: write a point, 0.9239"
 for none in 1,2,3 'cos(pi/8)' 1/2 '0.9239 omega_p' '−0.9239' 5e .5. . + 0x1 nan inf '*'; do
-    answer 1-3 "$none" 2 "'$none' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
+    answer 1-3 "$none" 2 "'$none' is no number: a number looks like 0.5, .5 or 5e-1"
 done
 for none in "it's" '"' ';'; do
-    make_answer 1-3 "$none" 2 "'$none' is no number: a number looks like 0.9239, .9239 or 9.239e-1"
+    make_answer 1-3 "$none" 2 "'$none' is no number: a number looks like 0.5, .5 or 5e-1"
 done
-make_answer 1-3 '' 2 "the answer is empty: give a number, like ANSWER=0.9239"
+make_answer 1-3 '' 2 "the answer is empty: give a number, like ANSWER=0.5"
 make_answer 1-3 0.9239 "" "right (within 0.022 %)"
-for empty in '' ' '; do answer 1-3 "$empty" 2 "the answer is empty: give a number, like ANSWER=0.9239"; done
+for empty in '' ' '; do answer 1-3 "$empty" 2 "the answer is empty: give a number, like ANSWER=0.5"; done
 answer 1-3 '92 %' 2 "write 0.92 for 92 %"
 answer 4b-9 1.3% 2 "the answer is asked for in per cent: write 92 for 92 %"
 answer 0-1 1 2 "there is no exercise '0-1'; 'make exercises' lists them"
