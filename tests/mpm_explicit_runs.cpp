@@ -37,7 +37,7 @@ TEST_CASE("at a quarter of the limit two disks rebound" * doctest::description("
     // On 24 to 64 cells in a radius the contact lasts 0.4045 to 0.4066, linear and gimp.
     const double resolved = 0.4055;
     CHECK(std::fabs(r.value("contact_lasts") / resolved - 1) <= 0.05);
-    // Half of the contact is 0.24 R, and R is eight cells: too few, which a warning says.
+    // Half of the contact is 0.24 R, and R is eight cells: too few for an approach, which is not compared.
     CHECK(std::fabs(r.value("contact_half_width") / 8 - 0.24) <= 0.005);
     CHECK(r.summary["warnings"].empty());
     const Run fine = run("fine", "rebound", "grid.cells_x=144 grid.cells_y=72 time.end=1");
