@@ -124,8 +124,7 @@ TEST_CASE("the error bar holds the truth in 95 of 100 noisy records" *
         for (const double noise : {0.01, 0.1, 0.3}) {
             CAPTURE(signal.name);
             CAPTURE(noise);
-            double off = 0;
-            std::vector<double> errors;
+            double off = 0, error = 0, widest = 0;
             int found = 0;
             for (int seed = 0; seed < records; ++seed) {
                 const auto seen = measure_mode(times_of(signal), record_of(signal, noise, seed),
@@ -136,13 +135,13 @@ TEST_CASE("the error bar holds the truth in 95 of 100 noisy records" *
                 all += 1;
                 frequency += std::fabs(change.real()) <= seen.error.real();
                 growth += std::fabs(change.imag()) <= seen.error.imag();
-                off += std::norm(change), errors.push_back(std::norm(seen.error));
+                off += std::norm(change), error += std::norm(seen.error);
+                widest = std::max(widest, std::norm(seen.error));
             }
             CHECK(found >= (noise < 0.3 ? records : records / 4));
-            // Nor is it so wide that nothing could fail: two deviations, and four at most in half of
-            // the records; but for those with weak modes, which count as noise.
-            std::nth_element(errors.begin(), errors.begin() + found / 2, errors.end());
-            if (signal.omega.size() <= 2) CHECK(errors[std::size_t(found / 2)] * found <= 16 * off);
+            // Nor is it so wide that nothing could fail: two deviations, and four at most, but in the one
+            // record where other models are nearly as good; and but for weak modes, which count as noise.
+            if (signal.omega.size() <= 2) CHECK(error - widest <= 16 * off);
         }
     CHECK(frequency >= 0.95 * all);
     CHECK(growth >= 0.95 * all);

@@ -269,7 +269,7 @@ inline void validate(Case& w) {
     w.is_uniform() ? detail::validate_uniform(w) : detail::validate_sheet(w);
 }
 
-/// Warnings of sections that the set-up does not read, of seeds that walls do not let be, and of runs in which
+/// Warnings of sections that the set-up does not read, of seeds and charges that walls do not let be, and of runs in which
 /// particles fly straight on, because time or box are too short for any field to act on them. Where light is
 /// seeded, it may be light that is followed.
 inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& scales) {
@@ -296,6 +296,12 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
         look("x", w.grid.x, w.uniform.mode_x, w.uniform.mode_z, s.wave_x, s.phase_x);
         look("z", w.grid.z, w.uniform.mode_z, w.uniform.mode_x, s.wave_z, s.phase_z);
     }
+    double charge = 0;
+    if (w.is_uniform())
+        for (const SpeciesCase& s : w.uniform.species) charge += s.density * s.charge;
+    warn(warnings, std::fabs(charge) > 1e-9 && !(w.grid.x.periodic && w.grid.z.periodic),
+         "the species together have a charge of ", charge,
+         " e n0, and between walls nothing makes it neutral: add a species of the other charge");
     if (w.end == 0) return warnings;
     double omega_p = 0, Omega_c = 0, inverse_debye = 0;
     for (const SpeciesScales& s : scales.species) {
@@ -326,8 +332,8 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
     return warnings;
 }
 
-/// Warnings of what is faster than light at the start, how many particles, of a drift E x B that would be, of what
-/// nothing makes neutral, and of sheets whose heat is relativistic.
+/// Warnings of what is faster than light at the start, how many particles, of a drift E x B that would be, and of
+/// sheets whose heat is relativistic.
 inline std::vector<std::string> superluminal_warnings(const Case& w, const Scales& scales) {
     std::vector<std::string> warnings;
     const double each = double(scales.particles) / std::max(1.0, double(scales.species.size()));
@@ -347,11 +353,6 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
          w.is_relativistic() ? "needs less than 1: particles run away"
                              : "would be that many times as fast as light",
          "; lower it, or raise uniform.B");
-    double charge = 0;
-    for (const SpeciesCase& s : u.species) charge += s.density * s.charge;
-    warn(warnings, std::fabs(charge) > 1e-9 && !(w.grid.x.periodic && w.grid.z.periodic),
-         "the species together have a charge of ", charge,
-         " e n0, and between walls nothing makes it neutral: add a species of the other charge");
     return warnings;
 }
 

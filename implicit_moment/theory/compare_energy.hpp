@@ -29,6 +29,7 @@ inline bool is_gem(const Case& w) {
            h.guide_field == 0;
 }
 
+/// Whether a species begins with a wave.
 inline bool has_seed(const SpeciesCase& s) {
     return s.wave_x != 0 || s.wave_y != 0 || s.wave_z != 0;
 }

@@ -74,12 +74,6 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                " of a cell, and the force of linear splines jumps between cells, so that the wave "
                "is not linear: lower the seed to " +
                format(0.01 / swing) + " of it, or take particles.order = 2";
-    if (!theory.of_scheme && !grows && !w.leapfrog.chosen && !w.field.uses_mass_matrix())
-        return "what moments predict acts as friction, by (k dx)^2 omega_p^2 dt/24, and few "
-               "particles make "
-               "noise: set field.response = \"mass_matrix\", refine the mesh, lower time.dt, or "
-               "raise the "
-               "particles per cell";
     const std::string near_c = drifts_near_c(w)
                                    ? "; or raise field.smoothing_passes: particles near "
                                      "c feed light that the mesh slows down (numerical "
@@ -147,9 +141,13 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     else if (seen.found && theory.of_scheme)
         summary.result("damping", damping, "omega_pi", 0 - growth,
                        std::min(1e-3, tolerance) * frequency, theory.source);
-    else if (seen.found && seen.growth_error() < 2e-3 * frequency)
+    else if (seen.found && seen.growth_error() < 2e-3 * frequency) {
+        if (w.field.theta == 0.5 && !w.leapfrog.chosen && !w.field.uses_mass_matrix())
+            summary.hint(
+                "what moments predict acts as friction, by (k dx)^2 omega_p^2 dt/24: set "
+                "field.response = \"mass_matrix\", refine the mesh or lower time.dt");
         summary.result("damping", damping, "omega_pi", 0 - growth, 2e-3 * frequency, theory.source);
-    else if (seen.found)
+    } else if (seen.found)
         summary.result_info("damping", damping, "omega_pi", theory.source);
 }
 

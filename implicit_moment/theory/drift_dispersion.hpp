@@ -200,7 +200,7 @@ LocalWave fastest_wave(const Waves& wave, double low, double high) {
 inline constexpr double lowest_z = 0.2, highest_z = 4.0;
 
 /// The fastest growing local wave of wave number k, wherever it is.
-/// out:    none where it is half as fast as electrons gyrate, which theory takes for much faster
+/// out:    none where it is half as fast as electrons gyrate or faster; theory takes them for much faster
 inline LocalWave fastest_over_z(const CurrentSheet& sheet, double k) {
     const LocalWave wave =
         fastest_wave([&](double z) { return local_root(sheet, z, k); }, lowest_z, highest_z);

@@ -305,8 +305,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         // As measured: 8 to 13 per cent, in five cases; the other shapes are right within 1, and so are disks.
         warnings.push_back(
             "method.shape = \"quadratic\" makes flat grains that a rigid one presses too soft, by "
-            "a "
-            "tenth: take \"gimp\" or \"linear\"");
+            "a tenth: take \"gimp\" or \"linear\"");
     if (g > 0 && problem.has_friction() && base < 6)
         warnings.push_back(
             "a polygon has a side of " + format(base) +

@@ -39,11 +39,11 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const double side = mesh.h / double(problem.per_side);
     double lightest = 1e300, shortened = 0;
     s.thinnest = 1e300;
-    double slowest = 1e300, fastest_x = -1e300;
+    double slowest_x = 1e300, fastest_x = -1e300;
     for (const PlannedGrain& plan : plans)
-        slowest = std::min(slowest, plan.from.velocity_x),
+        slowest_x = std::min(slowest_x, plan.from.velocity_x),
         fastest_x = std::max(fastest_x, plan.from.velocity_x);
-    const double shared = mesh.periodic_x ? 0.5 * (slowest + fastest_x) : 0;
+    const double shared = mesh.periodic_x ? 0.5 * (slowest_x + fastest_x) : 0;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;

@@ -31,7 +31,7 @@ inline double uneven_stress(const Assembly& all, const std::vector<Material>& ma
         std::map<std::pair<long, long>, Cell> cells;
         for (long p = grain.begin; p < grain.end; ++p) {
             const auto place = [&](double x) { return std::lround(std::floor(x / mesh.h)); };
-            Cell& cell = cells[{place(at.x_p[p]), place(at.y_p[p])}];
+            Cell& cell = cells[{place(at.x_p[p] - mesh.x_low), place(at.y_p[p] - mesh.y_low)}];
             const Stress s = at.stress(std::size_t(p));
             const double V = at.V_p[p];
             cell.V += V, cell.energy += 0.5 * V * twice_energy(s, s);
@@ -51,16 +51,15 @@ inline void warn_of_noise(const Case& parameters, const ThetaScheme& scheme, dou
                           const Assembly& all, common::Run& run) {
     const double elastic = run.history.column("elastic").back(),
                  kinetic = run.history.column("kinetic").back();
-    if (scheme.theta >= 0.505 || !(elastic > 20 * kinetic)) return;
+    if (scheme.theta >= 0.505 || !(elastic > 10 * kinetic)) return;
     const double part =
         uneven_stress(all, materials_of(parameters.problem), parameters.problem.mesh());
     if (part > 0.1)
         run.summary.late_warnings.push_back(
             "a part " + format(part) +
             " of the elastic energy at the end is of stress that alternates within cells: noise "
-            "has "
-            "grown in what is pressed, and forces may be too small by as much; set method.theta = "
-            "0.6 or material.<name>.viscosity = " +
+            "has grown in what is pressed, and forces may be too small by as much; set "
+            "method.theta = 0.6 or material.<name>.viscosity = " +
             format(0.1 * dt) + ", or refine what is bent and has fewer than four cells across");
 }
 
