@@ -180,9 +180,9 @@ $(programs): %: $(BUILD)/% $$(openpmd)
 $(BUILD)/flags: FORCE | $(packages_first)
 	$(call need,$(firstword $(CXX)))
 	@mkdir -p $(@D)
-	@{ echo '$(CXX) $(flags) $(include_paths) $(libraries)'; \
-	   $(CXX) $(flags) $(defines) -dM -E -x c++ /dev/null | cksum; } > $@.new
-	@cmp -s $@.new $@ || cp $@.new $@; rm -f $@.new
+	@new=$@.$$$$; { echo '$(CXX) $(flags) $(include_paths) $(libraries)'; \
+	   $(CXX) $(flags) $(defines) -dM -E -x c++ /dev/null | cksum; } > $$new; \
+	   cmp -s $$new $@ || cp $$new $@; rm -f $$new
 
 $(objects)/%.o: %.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
@@ -473,10 +473,10 @@ $(foreach n,1 2 3 4 5 6 7 8 9,$(eval .PHONY: fig$n)$(eval fig$n: fig0$n))
 # make plot RUN=out/cic/mine
 plot watch movie:
 	$(call need,gnuplot)
-	@sh common/plot.sh $(@:plot=draw) '$(RUN)'
+	@sh common/plot.sh $(@:plot=draw) "$$RUN"
 compare:
 	$(call need,gnuplot)
-	@sh common/plot.sh compare '$(A)' '$(B)'
+	@sh common/plot.sh compare "$$A" "$$B"
 
 # The talk's figures that move, each from a run of its own with many snapshots: program, case and overrides, kind of snapshots, quantities.
 define movie

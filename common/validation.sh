@@ -50,7 +50,7 @@ body() {
     function flush(    i, name, row, expected, verdict, rest) {
         if (folder == "") return
         if (value["", "program"] != program) { program = value["", "program"]; print "<h2" (headed[program]++ ? "" : " id=\"" program "\"") ">" program "</h2>" }
-        print "<h3 id=\"" folder "\">" substr(folder, index(folder, program) + length(program) + 1) "</h3>"
+        print "<h3 id=\"" folder "\">" (index(folder, program "/") ? substr(folder, index(folder, program "/") + length(program) + 1) : folder) "</h3>"
         print "<table class=\"wide\"><thead><tr><th>result</th><th>measured</th><th>error</th><th>expected</th><th>tolerance</th>" \
               "<th>verdict</th><th>source</th></tr></thead><tbody>"
         for (i = 1; i <= results; i++) {

@@ -241,7 +241,7 @@ TEST_CASE("unknown and repeated keys are refused with the nearest name" *
 cells_x = 3 -> case.toml:1:11: unknown parameter 'cells_x'; did you mean 'grid.cells_x'?
 [output] | VTK = true -> :2:7: unknown parameter 'output.VTK'; did you mean 'output.vtk'?
 [grid] | cells = 100 -> unknown parameter 'grid.cells'; did you mean 'grid.cells_
-[weather] | forecast = 1 -> :2:12: unknown parameter 'weather.forecast'; --help lists all
+[weather] | forecast = 1 -> :2:12: unknown parameter 'weather.forecast'; --help lists all; is the case one of this program?
 [weather] -> case.toml:1:1: unknown section [weather]
 [time] | weather = {} -> case.toml:2:
 [ITEM.beam] | KEY_ = 1 -> unknown parameter 'ITEM.beam.KEY_'; did you mean 'ITEM.beam.KEY'?
@@ -349,6 +349,7 @@ case.toml time.end = 0.1 -> two case files, 'case.toml' and 'time.end': give one
 time.end= -> command line: 'time.end=':
 tiem.end=0.1 -> line: 'tiem.end=0.1': unknown parameter 'tiem.end'; did you mean 'time.end'?
 tiem.end=soon -> line: 'tiem.end=soon': unknown parameter 'tiem.end'; did you mean 'time.end'?
+TIME.END=1 -> 'TIME.END'; did you mean 'time.end'?
 "weather.forecast=it's" -> unknown parameter 'weather.forecast'; --help lists all
 case.toml ITEM.beam.KEY_=high -> unknown parameter 'ITEM.beam.KEY_'; did you mean 'ITEM.beam.KEY'?
 grid=64 -> unknown parameter 'grid'

@@ -1,6 +1,7 @@
 # particles.awk: the gnuplot commands of particles.gp, after tables.awk.
 $1 + 0 == $1 {
     count[files]++
+    seen[$(group = number["species"] + number["material"] + number["grain"])]
     speed = 0
     for (i = 1; i <= NF; i++) if (name[i] ~ /^v_[xyz]$/) speed += $i * $i
     if (speed > fastest) fastest = speed
@@ -19,20 +20,23 @@ function row(k, a, b, colored,    f) {
         printf "set title 'time %.5g'\n", time[f]
         size = count[f] > 5000 ? 0.15 : count[f] > 500 ? 0.4 : 1
         if (!count[f]) print "plot -1e30"
-        else printf "plot '%s' using %d:%d:(%s) with points pt 7 ps %g lc %s\n", file[f], a, b, colored ? "sqrt(" squares ")" : group ? "color_of($" group ")" : "0x0072B2", size, colored ? "palette" : "rgb variable"
+        else printf "plot '%s' using %d:%d:(%s) with points pt 7 ps %g lc %s notitle%s\n", file[f], a, b, colored ? "sqrt(" squares ")" : group ? "color_of($" group ")" : "0x0072B2", size, colored ? "palette" : "rgb variable", colored || f < to ? "" : key
     }
 }
 
 function page() {
     begin_page(250, to - from + 1, rows_of_page)
     print "color_of(n) = n < 0 ? 0x777777 : int(word('29362 13983232 40563 13400487 15113984 5682409 7829367 0', 1 + int(n) % 8))"
+    printf "set key at screen %.5f, graph 1 left top Left reverse samplen 0.5 font ',16'\n", (115 + (to - from + 1) * (width + 25)) / wide
     row(1, x, plane ? other : number["v_x"] ? number["v_x"] : columns, 0)
     if (rows_of_page == 2) row(2, x, other, 1)
     print "unset multiplot"
 }
 
 END {
-    group = number["species"] + number["material"] + number["grain"]
+    n = split(names, list, " ")
+    for (i = 1; i < n; i += 2) if (number[list[i]]) entry[++entries] = list[i + 1]
+    for (i = 1; i <= entries && entries <= 8; i++) if (i - 1 in seen) key = key sprintf(", keyentry with points pt 7 ps 1 lc rgb color_of(%d) title '%s'", i - 1, plain(entry[i]))
     other = number["z"] ? number["z"] : number["y"]
     x = number["x"]
     plane = other && high[other] - low[other] > 1e-9 * (high[x] - low[x])

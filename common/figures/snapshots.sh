@@ -11,4 +11,5 @@ if [ $# = 0 ]; then
 fi
 script=common/figures/fields.awk
 [ "$kind" != particles ] || script=common/figures/particles.awk
-awk -f common/columns.awk "$1" | awk -v kind="$kind" -f common/figures/tables.awk -f $script - "$@"
+names=$(sed -nE 's/^\[(species|material|grain)[.](.*)\]$/\1 \2/p' "$run/case.toml" | tr '\n' ' ')
+awk -f common/columns.awk "$1" | awk -v kind="$kind" -v names="$names" -f common/figures/tables.awk -f $script - "$@"

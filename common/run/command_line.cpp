@@ -151,7 +151,9 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     std::vector<nlohmann::ordered_json> found;
     int status = 0;
     for (int n = 0; n < command.refine; ++n) {
-        std::string finer, line = shell_word(command.program) + " " + shell_word(command.case_path);
+        // SIGTERM that ends this program ends the run, too.
+        std::string finer, line = "exec setpriv --pdeathsig TERM " + shell_word(command.program) +
+                                  " " + shell_word(command.case_path);
         for (const Setting& one : read_case(table.effective_case(), command.case_path)) {
             const long cells = one.name.starts_with("grid.cells_") ? std::get<long>(one.value) : 0;
             const double* dt = one.name == "time.dt" ? std::get_if<double>(&one.value) : nullptr;
@@ -162,10 +164,11 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             if (finer.find(' ' + one.substr(0, one.find('=') + 1)) == std::string::npos)
                 line += ' ' + shell_word(one);
         const std::string folder = command.out_dir + "/" + std::to_string(n + 1);
-        line += finer + " --quiet --out " + shell_word(folder);
+        line += finer + (command.dry_run ? " --dry-run --out " : " --quiet --out ") +
+                shell_word(folder);
         if (command.threads > 0) line += " --threads " + std::to_string(command.threads);
         line += std::string(command.force ? " --force" : "") + (command.resume ? " --resume" : "") +
-                (command.strict ? " --strict" : "") + (command.dry_run ? " --dry-run" : "");
+                (command.strict ? " --strict" : "");
         std::printf("%d:%s\n", n + 1, finer.c_str()), std::fflush(stdout);
         const int ended = std::system(line.c_str());
         status = std::max(status, WIFEXITED(ended) ? WEXITSTATUS(ended) : 130);

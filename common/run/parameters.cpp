@@ -19,13 +19,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Number of single-letter edits between two words; their parts in another order are one.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
     if (a != b && std::is_permutation(a.begin(), a.end(), b.begin(), b.end())) return 1;
+    const auto lower = [](unsigned char letter) { return std::tolower(letter); };
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         std::size_t diagonal = row[0];
         row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            const std::size_t replaced = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
             diagonal = row[j];
             row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
         }
@@ -157,8 +158,8 @@ std::string ParameterTable::in_nearest_list(const std::string& name) const {
     for (const Entry& entry : entries_)
         if (entry.name.starts_with(section + ".")) return "";
     for (const List& list : lists_) {
-        const std::size_t distance = edit_distance(section, list.name);
-        if (distance > 0 && distance <= 2) return list.name + name.substr(section.size());
+        if (section != list.name && edit_distance(section, list.name) <= 2)
+            return list.name + name.substr(section.size());
     }
     return "";
 }
@@ -245,9 +246,11 @@ void ParameterTable::set(const Setting& setting) {
             throw InputError(setting.place + ": '" + setting.name + "' has a new name: write '" +
                              now + "'");
         const std::string guess = nearest(setting.name);
-        throw InputError(
-            setting.place + ": unknown parameter '" + setting.name + "'" +
-            (guess.empty() ? "; --help lists all" : "; did you mean '" + guess + "'?"));
+        throw InputError(setting.place + ": unknown parameter '" + setting.name + "'" +
+                         (!guess.empty() ? "; did you mean '" + guess + "'?"
+                          : setting.place.starts_with("command line")
+                              ? "; --help lists all"
+                              : "; --help lists all; is the case one of this program?"));
     }
     const auto refuse = [&](const std::string& why) {
         throw InputError(setting.place + ": '" + setting.name + "'" + why);
