@@ -11,7 +11,8 @@ export LC_ALL := C.UTF-8
 mains := cic/cic.cpp flip/pic/pic.cpp flip/flip/flip.cpp mpm_explicit/mpm_explicit.cpp mpm_implicit/mpm_implicit.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 
 # Programs that time the loop of a main, step by step; `make bench` runs them all.
-benches := cic/bench.cpp flip/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp
+benches := cic/bench.cpp flip/bench.cpp mpm_explicit/bench.cpp mpm_implicit/bench.cpp implicit_moment/bench.cpp \
+           implicit_moment/explicit_em/bench.cpp
 
 # ---- how: everything here can be set on the command line, e.g. make CXX=clang++-14 test ---------
 
@@ -59,6 +60,11 @@ mpi_cxx = env OMPI_CXX='$(CXX)' MPICH_CXX='$(CXX)' mpicxx
 ifneq ($(MPI),)
 mains := cic/cic.cpp implicit_moment/implicit_moment.cpp implicit_moment/explicit_em/explicit_em.cpp
 endif
+# In single precision those whose step computes in it.
+ifneq ($(filter float,$(REAL)),)
+mains   := cic/cic.cpp implicit_moment/explicit_em/explicit_em.cpp
+benches := cic/bench.cpp implicit_moment/explicit_em/bench.cpp
+endif
 
 # With `make deps fig09`, also with -j, everything waits until the packages are there.
 packages_first := $(filter deps deps-dev deps-sweep deps-mpi deps-web,$(MAKECMDGOALS))
@@ -67,7 +73,7 @@ packages_first := $(filter deps deps-dev deps-sweep deps-mpi deps-web,$(MAKECMDG
 need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make deps'" >&2; exit 2; }
 
 programs  := $(basename $(notdir $(mains)))
-bench_programs := $(benches:%/bench.cpp=$(BUILD)/bench/%)
+bench_programs := $(benches:%.cpp=$(BUILD)/benches/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
 shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp) $(if $(MPI),common/ranks.cpp))
 # What the theory of a method compiles by itself. From an archive the linker takes what a program calls: only who
@@ -146,7 +152,7 @@ The particle-in-cell family in running code
   make TRAP=1 test                         the facts, ended where 0/0 or inf - inf arises, in build/trap/
   make MPI=1 all         programs that share a case among machines, in build/mpi/ (packages: make deps-mpi):
                          mpirun -n 4 build/mpi/explicit_em; implicit_moment, cic
-  make REAL=float bench                    particles of cic in single precision, in build/float/
+  make REAL=float bench                    particles of cic and explicit_em in single precision, in build/float/
   make CXX=clang++-14 all                  another compiler; also ARCH=, OPTIMIZE=, EIGEN=, CXXFLAGS=
   make OPTIMIZE=-O0 BUILD=build/quick cic  compiled in less than half the time
 endef
@@ -219,7 +225,7 @@ $(programs:%=$(BUILD)/%): $(BUILD)/%: $$(objects)/$$(call folder_of,$$*)/$$*.o $
 	$(link) $(objects)/$(@F).revision.o
 $(tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: $(objects)/tests/%.o $(objects)/tests/support/doctest_main.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
-$(bench_programs): $(BUILD)/bench/%: $(objects)/%/bench.o $(shared) $(theory) $(formula) $(BUILD)/flags
+$(bench_programs): $(BUILD)/benches/%: $(objects)/%.o $(shared) $(theory) $(formula) $(BUILD)/flags
 	$(link)
 
 -include $(patsubst %.cpp,$(objects)/%.d,$(mains) $(benches) $(wildcard */theory/*.cpp common/*.cpp common/run/*.cpp tests/*.cpp))
@@ -584,10 +590,10 @@ $(BUILD)/planted_race: $(objects)/tests/torture/planted_race.o $(BUILD)/flags
 
 # With MPI=1 two ranks beside one, and what messages cost.
 ifneq ($(MPI),)
-$(BUILD)/bench/message_times: $(objects)/tests/support/message_times.o $(objects)/common/ranks.o
+$(BUILD)/benches/message_times: $(objects)/tests/support/message_times.o $(objects)/common/ranks.o
 	$(link)
 -include $(objects)/tests/support/message_times.d
-bench: all $(BUILD)/bench/message_times
+bench: all $(BUILD)/benches/message_times
 	@sh tests/support/ranks_bench.sh $(BUILD)
 else
 bench: $(bench_programs)

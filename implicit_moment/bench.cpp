@@ -1,80 +1,28 @@
-// How fast the steps of implicit_moment and explicit_em are, and where their time goes: the same calls
-// with a clock between them, on the two runs of the talk's cost slide, by one thread and by two.
-// `make bench` runs it.
+// How fast the step of implicit_moment is, and where its time goes: the same calls with a clock between
+// them, on the run of the talk's cost slide, by one thread and by two. `make bench` runs it.
 #include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "common/run/machine.hpp"
-#include "implicit_moment/explicit_em/setup/leapfrog_state.hpp"
-#include "implicit_moment/explicit_em/step.hpp"
-#include "implicit_moment/setup/describe_case.hpp"
 #include "implicit_moment/setup/initial_state.hpp"
 #include "implicit_moment/step.hpp"
-#include "tests/support/core_limits.hpp"
+#include "tests/support/time_threads.hpp"
 
 namespace {
 
 using namespace implicit_moment;
+using support::Loops, support::time_threads;
 
 // What a particle takes, counted in the code. Where it is in its cell, 4; quadratic splines, 16; B there, 39,
 // and E, 50; the midpoint rule, 42. moments: sums of a species 13, of a node 126. mover: twice (as in
 // this run) a midpoint with E, B and how far it strays, 165; walls and update 27. mass: weights 21,
-// rotation 52, both factors 105, block 1008; mover: two flights 8, kick 160. push: gather 24, kicks 12,
-// rotation 48, gamma 10, way and cell 21, current 26; those that leave their cell take more.
-struct Loop {
-    const char* name;
-    support::Count count;
-};
-using Loops = std::vector<Loop>;
-const Loops of_moments{{"moments", {4 + 16 + 39 + 42 + 13 + 126, 40}},    // x, u
-                       {"mover", {4 + 2 * 165 + 27, 80}},                 // x, u and back
-                       {"sort", {0, 32 + 5 * 20}}};                       // keys, places; x, u
-const Loops of_mass{{"mass", {4 + 16 + 39 + 21 + 52 + 105 + 1008, 40}},   // x, u
-                    {"mover", {8 + 160, 2 * 48 + 64}}};                   // x, u; x, u and back
-const Loops of_push{{"push", {2 * 3 + 24 + 12 + 48 + 10 + 21 + 26, 80}},  // x, u and back
-                    {"sort", {0, 80}}};                                   // x, u and back
-
-// Prints a line for one thread and one for two: the rate, and the shares of the parts of a step; and of
-// its loops over particles, by one thread, how much of the machine they use.
-// in: start(parameters), which makes the state; take(state, clock), which takes all steps and says how
-//     many iterations of the field each had
-template <class Start, class Take>
-void time_threads(const Case& parameters, const std::string& program, long steps,
-                  const std::vector<std::string>& parts, const Loops& loops, const Start& start,
-                  const Take& take) {
-    std::printf("\n%s, GEM default case (%ld x %ld cells), %ld steps\n\n%8s %16s %9s",
-                program.c_str(), parameters.grid.x.cells, parameters.grid.z.cells, steps, "threads",
-                "particle-steps/s", "speed-up");
-    for (const std::string& part : parts) std::printf(" %9s", part.c_str());
-    std::printf(" %11s\n", "iterations");
-    double one_thread = 0, count = 0;
-    std::vector<double> seconds;
-    for (const int threads : {1, 2}) {
-        common::set_thread_count(threads);
-        State state = start(parameters);
-        count = double(state.plasma.count());
-        common::StepClock clock;
-        const double iterations = take(state, clock);
-        const double total = clock.total(), rate = count * double(steps) / total;
-        if (threads == 1) {
-            one_thread = rate;
-            for (const Loop& loop : loops)
-                seconds.push_back(clock.seconds(loop.name) / (count * double(steps)));
-        }
-        std::printf("%8d %16.4g %9.2f", threads, rate, rate / one_thread);
-        for (const std::string& part : parts)
-            std::printf(" %8.1f%%", 100 * clock.seconds(part.c_str()) / total);
-        std::printf(" %11.1f\n", iterations);
-    }
-    static const double peak = support::peak_flops<double>(), triad = support::triad_bytes();
-    support::print_limits(peak, triad);
-    for (std::size_t k = 0; k < loops.size(); ++k)
-        support::print_use(loops[k].name, seconds[k], loops[k].count, peak, triad);
-    std::printf("\n%.0f particles of %zu bytes; peak memory %.1f MiB\n", count, 5 * sizeof(double),
-                common::peak_memory_bytes() / 1048576);
-}
+// rotation 52, both factors 105, block 1008; mover: two flights 8, kick 160.
+const Loops of_moments{{"moments", {4 + 16 + 39 + 42 + 13 + 126, 40}},   // x, u
+                       {"mover", {4 + 2 * 165 + 27, 80}},                // x, u and back
+                       {"sort", {0, 32 + 5 * 20}}};                      // keys, places; x, u
+const Loops of_mass{{"mass", {4 + 16 + 39 + 21 + 52 + 105 + 1008, 40}},  // x, u
+                    {"mover", {8 + 160, 2 * 48 + 64}}};                  // x, u; x, u and back
 
 // Prints what the field takes per node on finer meshes of the same box, by one thread and by two, with as many
 // particles in each cell.
@@ -138,18 +86,5 @@ int main() {
     time_response("mass_matrix", 200, {"moments", "mass", "field", "mover", "sort"}, of_mass);
     w.field.response = "moments";
     time_field(w);
-    Case e;
-    describe_explicit(e);
-    time_threads(e, "explicit_em", 20, {"push", "field", "sort"}, of_push, leapfrog_state,
-                 [&](State& state, common::StepClock& clock) {
-                     LeapfrogScratch scratch(e.grid);
-                     clock.resume();
-                     for (long step = 0; step < 20; ++step) {
-                         interleave_field(e.grid, e.field.smoothing, state.field, scratch, clock);
-                         take_step(e.grid, e.dt, e.leapfrog, e.field.smoothing, scratch,
-                                   state.plasma.species, state.field, clock);
-                     }
-                     return 0.0;
-                 });
     return 0;
 }

@@ -44,12 +44,12 @@ inline std::array<Real, 9> rotation_matrix(const Real& x, const Real& y, const R
 
 /// gamma^2 = 1 + u^2/c^2. in: per_c_squared = 1/c^2, or 0, which makes gamma = 1.
 template <class Real>
-inline Real gamma_squared(const Velocity<Real>& u, double per_c_squared) {
+inline Real gamma_squared(const Velocity<Real>& u, NumberOf<Real> per_c_squared) {
     return 1.0 + per_c_squared * (u.x * u.x + u.y * u.y + u.z * u.z);
 }
 /// 1/gamma, the factor from u to v.
 template <class Real>
-inline Real inverse_gamma(const Velocity<Real>& u, double per_c_squared) {
+inline Real inverse_gamma(const Velocity<Real>& u, NumberOf<Real> per_c_squared) {
     return 1.0 / square_root(gamma_squared(u, per_c_squared));
 }
 

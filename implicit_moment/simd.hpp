@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
+#include <utility>
+
+#include "implicit_moment/units.hpp"
 
 namespace implicit_moment {
 
@@ -19,39 +23,62 @@ inline constexpr int simd_width = 2;
 /// So many doubles with +, -, *, / and comparisons per lane; a plain double meets all lanes.
 using SimdVector [[gnu::vector_size(simd_width * sizeof(double))]] = double;
 using SimdMask [[gnu::vector_size(simd_width * sizeof(double))]] = std::int64_t;  // of a comparison
+/// A register of what particles carry: of floats twice as many.
+using ParticleVector [[gnu::vector_size(simd_width * sizeof(double))]] = ParticleReal;
+
+namespace detail {
+template <class Real>
+struct LaneOf {
+    using Number = std::remove_cvref_t<decltype(std::declval<Real&>()[0])>;
+};
+template <std::floating_point Real>
+struct LaneOf<Real> {
+    using Number = Real;
+};
+}  // namespace detail
+
+/// The number in each lane of a vector; of a number itself.
+template <class Real>
+using NumberOf = typename detail::LaneOf<Real>::Number;
+template <class Vector>
+inline constexpr int lanes_of = int(sizeof(Vector) / sizeof(NumberOf<Vector>));
 
 /// from[0], ..., from[count-1]; the lanes beyond count repeat from[0], so that they stay harmless.
-inline SimdVector load_simd(const double* from, long count) {
-    SimdVector lanes;
-    if (count >= simd_width) {
+template <class Vector = SimdVector, class Number>
+inline Vector load_simd(const Number* from, long count) {
+    Vector lanes;
+    if (std::same_as<Number, NumberOf<Vector>> && count >= lanes_of<Vector>) {
         __builtin_memcpy(&lanes, from, sizeof lanes);
     } else {
-        for (int l = 0; l < simd_width; ++l) lanes[l] = from[l < count ? l : 0];
+        for (int l = 0; l < lanes_of<Vector>; ++l) lanes[l] = from[l < count ? l : 0];
     }
     return lanes;
 }
 
 /// Writes the first count lanes.
-inline void store_simd(const SimdVector& lanes, double* to, long count) {
-    if (count >= simd_width) {
+template <class Vector, class Number>
+inline void store_simd(const Vector& lanes, Number* to, long count) {
+    if (std::same_as<Number, NumberOf<Vector>> && count >= lanes_of<Vector>) {
         __builtin_memcpy(to, &lanes, sizeof lanes);
     } else {
-        for (int l = 0; l < count; ++l) to[l] = lanes[l];
+        for (int l = 0; l < lanes_of<Vector> && l < count; ++l) to[l] = Number(lanes[l]);
     }
 }
 
 /// 1 in the first count lanes and 0 in the rest.
-inline SimdVector first_simd(long count) {
-    SimdVector lanes;
-    for (int l = 0; l < simd_width; ++l) lanes[l] = l < count ? 1 : 0;
+template <class Vector = SimdVector>
+inline Vector first_simd(long count) {
+    Vector lanes;
+    for (int l = 0; l < lanes_of<Vector>; ++l) lanes[l] = l < count ? 1 : 0;
     return lanes;
 }
 
 /// Sum of the lanes, halves first: of eight ((0+4)+(2+6)) + ((1+5)+(3+7)).
-inline double simd_sum(const SimdVector& lanes) {
-    double sum[simd_width];
-    __builtin_memcpy(sum, &lanes, sizeof lanes);
-    for (int half = simd_width / 2; half > 0; half /= 2)
+template <class Vector>
+inline double simd_sum(const Vector& lanes) {
+    double sum[lanes_of<Vector>];
+    for (int l = 0; l < lanes_of<Vector>; ++l) sum[l] = lanes[l];
+    for (int half = lanes_of<Vector> / 2; half > 0; half /= 2)
         for (int l = 0; l < half; ++l) sum[l] += sum[l + half];
     return sum[0];
 }
@@ -61,15 +88,17 @@ inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > 
 inline SimdVector magnitude(const SimdVector& a) {
     return SimdVector(SimdMask(a) & std::numeric_limits<std::int64_t>::max());
 }
-inline SimdVector square_root(const SimdVector& a) {
-    SimdVector root;
-    for (int l = 0; l < simd_width; ++l) root[l] = std::sqrt(a[l]);
+template <class Vector>
+inline Vector square_root(const Vector& a) {
+    Vector root;
+    for (int l = 0; l < lanes_of<Vector>; ++l) root[l] = std::sqrt(a[l]);
     return root;
 }
 inline double square_root(double a) { return std::sqrt(a); }
 
 /// Whether a comparison holds in any lane.
-inline bool any_simd(const SimdMask& mask) {
+template <class Mask>
+inline bool any_simd(const Mask& mask) {
     std::int64_t bits[simd_width];
     __builtin_memcpy(bits, &mask, sizeof mask);
     for (int half = simd_width / 2; half > 0; half /= 2)

@@ -13,7 +13,7 @@
 namespace implicit_moment {
 
 /// Shared by all species and kept between steps.
-using SortScratch = common::SortScratch<double>;
+using SortScratch = common::SortScratch<ParticleReal>;
 
 /// Stable counting sort of all that a particle carries. Cost: particles + keys.
 /// in:     key(p), the key of particle p, in [0, keys).
@@ -49,7 +49,7 @@ struct NearestNode {
 inline void sort_among_ranks(const NearestNode& node_at, SortScratch& scratch,
                              Particles& particles) {
     const auto quantities = particles.all();
-    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
+    const ParticleReal *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     const Division& of_ranks = particles.of_ranks;
     const long count = particles.count(), rows = of_ranks.first.back();
     const auto is_ours = [begin = of_ranks.begin(), end = of_ranks.end(rows)](long row) {
@@ -66,7 +66,7 @@ inline void sort_among_ranks(const NearestNode& node_at, SortScratch& scratch,
     for (const std::vector<long>& of_block : leaving) {
         for (const long p : of_block) {
             auto& message = to[std::size_t(of_ranks.owner(node_at.row(z_p[p])))];
-            for (const std::vector<double>* q : quantities) message.push_back((*q)[p]);
+            for (const std::vector<ParticleReal>* q : quantities) message.push_back((*q)[p]);
         }
     }
     common::exchange(peers, to, from);
@@ -94,13 +94,13 @@ inline void sort_among_ranks(const NearestNode& node_at, SortScratch& scratch,
     const int* place = scratch.target.data();
     for (std::size_t a = 0; a < quantities.size(); ++a) {
         scratch.column.resize(scratch.target.size());
-        const double* ours = quantities[a]->data();
-        double* sorted = scratch.column.data();
+        const ParticleReal* ours = quantities[a]->data();
+        ParticleReal* sorted = scratch.column.data();
         common::for_each_block(count, [&](int, long begin, long end) {
             for (long p = begin; p < end; ++p) sorted[place[before + p]] = ours[p];
         });
         for (long n = 0; n < arrivals; ++n)
-            sorted[place[n < before ? n : n + count]] = coming[5 * n + a];
+            sorted[place[n < before ? n : n + count]] = ParticleReal(coming[5 * n + a]);
         quantities[a]->swap(scratch.column);
         quantities[a]->resize(std::size_t(particles.first_of_node.back()));
     }
@@ -115,7 +115,7 @@ inline void sort_particles(const Grid& grid, SortScratch& scratch, Particles& pa
     const detail::NearestNode node_at(grid);
     if (!particles.of_ranks.is_whole())
         return detail::sort_among_ranks(node_at, scratch, particles);
-    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
+    const ParticleReal *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     sort_by_key(
         nodes_x(grid) * nodes_z(grid), [=](long p) { return node_at(x_p[p], z_p[p]); }, scratch,
         particles);

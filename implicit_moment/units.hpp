@@ -8,7 +8,14 @@
 
 #include <numbers>
 
+// What particles carry, and what explicit_em pushes them in: double, or with `make REAL=float` float.
+#ifndef REAL
+#define REAL double
+#endif
+
 namespace implicit_moment {
+
+using ParticleReal = REAL;
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double c = 1;              // speed of light

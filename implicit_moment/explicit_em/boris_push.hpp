@@ -24,7 +24,8 @@ struct LeapfrogSettings {
 /// exact:  |u| is unchanged; -k rotates back.
 /// source: Boris, Proc. 4th Conf. Numerical Simulation of Plasmas (1970).
 template <class Real>
-inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, double k, double per_c_squared) {
+inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> k,
+                   NumberOf<Real> per_c_squared) {
     const Real K_x = k * at.B_x, K_y = k * at.B_y, K_z = k * at.B_z;
     const Real gamma_2 = gamma_squared(u, per_c_squared);
     const Real gamma = square_root(gamma_2);
@@ -41,10 +42,10 @@ inline void rotate(Velocity<Real>& u, const LocalField<Real>& at, double k, doub
 /// in:     half_kick = q dt / 2m; per_c_squared = 1/c^2, or 0 for a push that is not relativistic.
 // [boris]
 template <class Real>
-inline void push(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
-                 double per_c_squared) {
+inline void push(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> half_kick,
+                 NumberOf<Real> per_c_squared) {
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
-    rotate(u, at, half_kick / c, per_c_squared);
+    rotate(u, at, half_kick / NumberOf<Real>(c), per_c_squared);
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
 }
 // [/boris]
@@ -52,17 +53,17 @@ inline void push(Velocity<Real>& u, const LocalField<Real>& at, double half_kick
 /// u^n from u^{n-1/2}: half the kick of E, then half the rotation.
 /// exact:  half_step_back undoes it.
 template <class Real>
-inline void half_step(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
-                      double per_c_squared) {
+inline void half_step(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> half_kick,
+                      NumberOf<Real> per_c_squared) {
     u.x += half_kick * at.E_x, u.y += half_kick * at.E_y, u.z += half_kick * at.E_z;
-    rotate(u, at, 0.5 * half_kick / c, per_c_squared);
+    rotate(u, at, half_kick / NumberOf<Real>(2 * c), per_c_squared);
 }
 
 /// u^{n-1/2} from u^n.
 template <class Real>
-inline void half_step_back(Velocity<Real>& u, const LocalField<Real>& at, double half_kick,
-                           double per_c_squared) {
-    rotate(u, at, -0.5 * half_kick / c, per_c_squared);
+inline void half_step_back(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> half_kick,
+                           NumberOf<Real> per_c_squared) {
+    rotate(u, at, half_kick / NumberOf<Real>(-2 * c), per_c_squared);
     u.x -= half_kick * at.E_x, u.y -= half_kick * at.E_y, u.z -= half_kick * at.E_z;
 }
 

@@ -29,9 +29,9 @@ inline long cells_of_tile(const Grid& grid, long order) {
 /// Of one species, between the push and sort_by_cell.
 struct Crossings {
     struct OfTile {
-        std::vector<int> to_cell;                         // one entry per particle that crosses
-        std::vector<std::array<double, 5>> quantities;    // in the order of Particles::all()
-        std::array<std::vector<double>, 5> below, above;  // room for sort_by_cell
+        std::vector<int> to_cell;                             // one entry per particle that crosses
+        std::vector<std::array<ParticleReal, 5>> quantities;  // in the order of Particles::all()
+        std::array<std::vector<ParticleReal>, 5> below, above;  // room for sort_by_cell
 
         void clear() { to_cell.clear(), quantities.clear(); }
     };

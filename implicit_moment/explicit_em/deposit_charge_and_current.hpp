@@ -131,7 +131,8 @@ inline void half_step_back(const InterleavedField& field, const Grid& grid, doub
             Velocity<double> u{particles.ux_p[p], particles.uy_p[p], particles.uz_p[p]};
             half_step_back(u, gather_field<l>(field, grid, particles.x_p[p], particles.z_p[p]),
                            half_kick, per_c_squared);
-            particles.ux_p[p] = u.x, particles.uy_p[p] = u.y, particles.uz_p[p] = u.z;
+            particles.ux_p[p] = ParticleReal(u.x), particles.uy_p[p] = ParticleReal(u.y),
+            particles.uz_p[p] = ParticleReal(u.z);
         }
     });
 }

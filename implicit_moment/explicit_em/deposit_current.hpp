@@ -42,7 +42,8 @@ struct CurrentSums {
     /// exact:  div of what is added = difference of S^(l) S^(l) between the ends.
     // [segment]
     void add(const Real& d_x, const Real& d_z, const Real& D_x, const Real& D_z, const Real& v_y) {
-        for (const double along : gauss_point<l>) {
+        for (const double point : gauss_point<l>) {
+            const auto along = NumberOf<Real>(point);
             const StencilWeights<l, Real> S_x(d_x + along * D_x), S_z(d_z + along * D_z);
             const Real part_x = D_x * (1.0 / l), part_y = v_y * (1.0 / l), part_z = D_z * (1.0 / l);
             for (int j = 0; j <= l; ++j) {

@@ -115,7 +115,8 @@ inline void exchange_crossings(long per_tile, Crossings& crossings) {
         for (const double* p = message.data(); p < message.data() + message.size(); p += size) {
             Crossings::OfTile& left = crossings.tiles[long(p[0])];
             left.to_cell.push_back(int(p[1]));
-            left.quantities.push_back({p[2], p[3], p[4], p[5], p[6]});
+            left.quantities.push_back({ParticleReal(p[2]), ParticleReal(p[3]), ParticleReal(p[4]),
+                                       ParticleReal(p[5]), ParticleReal(p[6])});
         }
     }
 }

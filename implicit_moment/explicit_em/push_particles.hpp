@@ -49,22 +49,25 @@ inline LocalField<Real> gather_field(const NodeField* corner, long stride, const
 }
 
 /// Sets stays to 0 where a position is beyond an end of the mesh: behind a wall, or to be wrapped.
-inline void keep_within(const common::Axis& axis, const SimdVector& x, SimdVector& stays) {
-    stays = x >= axis.low ? stays : 0.0 * stays;
-    stays = x < axis.high() ? stays : 0.0 * stays;
+inline void keep_within(const common::Axis& axis, const ParticleVector& x, ParticleVector& stays) {
+    stays = x >= not_below(axis.low) ? stays : 0.0 * stays;
+    stays = x < not_below(axis.high()) ? stays : 0.0 * stays;
 }
 
 /// The part of a way within the cell, as deposit_current finds it.
 /// in:     d and D, start and displacement in cells; low and high, the borders of the cell
-inline SimdVector first_part(const SimdVector& d_x, const SimdVector& D_x, double low_x,
-                             double high_x, const SimdVector& d_z, const SimdVector& D_z,
-                             double low_z, double high_z) {
-    const auto to_border = [](const SimdVector& d, const SimdVector& D, double low, double high) {
-        const SimdVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
+inline ParticleVector first_part(const ParticleVector& d_x, const ParticleVector& D_x,
+                                 ParticleReal low_x, ParticleReal high_x, const ParticleVector& d_z,
+                                 const ParticleVector& D_z, ParticleReal low_z,
+                                 ParticleReal high_z) {
+    const auto to_border = [](const ParticleVector& d, const ParticleVector& D, ParticleReal low,
+                              ParticleReal high) {
+        const ParticleVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
         return D == 0.0 ? 2.0 + D : to / way;
     };
-    const SimdVector x = to_border(d_x, D_x, low_x, high_x), z = to_border(d_z, D_z, low_z, high_z);
-    SimdVector part = x <= z ? x : z;
+    const ParticleVector x = to_border(d_x, D_x, low_x, high_x),
+                         z = to_border(d_z, D_z, low_z, high_z);
+    ParticleVector part = x <= z ? x : z;
     part = part > 0.0 ? part : 0.0 * d_x;
     return part < 1.0 ? part : 1.0 + 0.0 * d_x;
 }
@@ -89,6 +92,11 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
     const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
     const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
     const double per_c_squared = settings.per_c_squared();
+    // The same as particles have them.
+    constexpr int lanes = lanes_of<ParticleVector>;
+    const auto cells_per_x = ParticleReal(per_dx), cells_per_z = ParticleReal(per_dz),
+               kick = ParticleReal(half_kick), per_c2 = ParticleReal(per_c_squared),
+               step = ParticleReal(dt), per_step = ParticleReal(1 / dt);
     const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
     const long tiles = tiles_of(rows);
     std::vector<long> lost(tiles, 0);
@@ -115,53 +123,59 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                            end = particles.first_of_node[cell + 1];
                 if (begin == end) continue;
                 const double x_anchor = grid.x.at(double(column));
+                const auto x_of_cell = ParticleReal(x_anchor), z_of_cell = ParticleReal(z_anchor);
                 const double low_x = Stencil<l>::low_of(grid.x, column),
                              high_x = Stencil<l>::high_of(grid.x, column);
                 const bool at_end_x = column == 0 || column == columns - 1;
                 const NodeField* corner =
                     &field[grid.index(column + Stencil<l>::first, row + Stencil<l>::first)];
-                leaving.resize(end - begin + simd_width);
+                leaving.resize(end - begin + lanes);
                 long leaving_count = 0;
 
-                CurrentSums<l, SimdVector> sums;
-                for (long p = begin; p < end; p += simd_width) {
-                    const long count = std::min<long>(end - p, simd_width);
-                    SimdVector x = load_simd(&particles.x_p[p], count);
-                    SimdVector z = load_simd(&particles.z_p[p], count);
-                    Velocity<SimdVector> u{load_simd(&particles.ux_p[p], count),
-                                           load_simd(&particles.uy_p[p], count),
-                                           load_simd(&particles.uz_p[p], count)};
-                    const SimdVector d_x = (x - x_anchor) * per_dx, d_z = (z - z_anchor) * per_dz;
-                    push<SimdVector>(u,
-                                     gather_field<l, SimdVector>(corner, grid.stride(), d_x, d_z),
-                                     half_kick, per_c_squared);
-                    const SimdVector way = dt * inverse_gamma(u, per_c_squared);  // dt / gamma
-                    const SimdVector D_x = way * u.x * per_dx, D_z = way * u.z * per_dz;
-                    const SimdVector to_x = x + way * u.x, to_z = z + way * u.z;
-                    const SimdVector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
-                                     j = Stencil<l>::from_border(grid.z, per_dz, to_z);
+                CurrentSums<l, ParticleVector> sums;
+                for (long p = begin; p < end; p += lanes) {
+                    const long count = std::min<long>(end - p, lanes);
+                    ParticleVector x = load_simd<ParticleVector>(&particles.x_p[p], count);
+                    ParticleVector z = load_simd<ParticleVector>(&particles.z_p[p], count);
+                    Velocity<ParticleVector> u{
+                        load_simd<ParticleVector>(&particles.ux_p[p], count),
+                        load_simd<ParticleVector>(&particles.uy_p[p], count),
+                        load_simd<ParticleVector>(&particles.uz_p[p], count)};
+                    const ParticleVector d_x = (x - x_of_cell) * cells_per_x,
+                                         d_z = (z - z_of_cell) * cells_per_z;
+                    push<ParticleVector>(
+                        u, gather_field<l, ParticleVector>(corner, grid.stride(), d_x, d_z), kick,
+                        per_c2);
+                    const ParticleVector way = step * inverse_gamma(u, per_c2);  // dt / gamma
+                    const ParticleVector to_x = x + way * u.x, to_z = z + way * u.z;
+                    // As they have moved, rounded: then rho follows J to the last digit.
+                    const ParticleVector D_x = (to_x - x) * cells_per_x,
+                                         D_z = (to_z - z) * cells_per_z;
+                    const ParticleVector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
+                                         j = Stencil<l>::from_border(grid.z, per_dz, to_z);
 
                     // Move those that stay in the cell, note the others, and deposit all the way
                     // that they have within the cell.
-                    const SimdVector here = first_simd(count);
-                    SimdVector stays = here;
-                    stays = i >= double(column) ? stays : 0.0 * stays;
-                    stays = i < double(column + 1) ? stays : 0.0 * stays;
-                    stays = j >= double(row) ? stays : 0.0 * stays;
-                    stays = j < double(row + 1) ? stays : 0.0 * stays;
+                    const ParticleVector here = first_simd<ParticleVector>(count);
+                    ParticleVector stays = here;
+                    stays = i >= ParticleReal(column) ? stays : 0.0 * stays;
+                    stays = i < ParticleReal(column + 1) ? stays : 0.0 * stays;
+                    stays = j >= ParticleReal(row) ? stays : 0.0 * stays;
+                    stays = j < ParticleReal(row + 1) ? stays : 0.0 * stays;
                     if (at_end_x) keep_within(grid.x, to_x, stays);
                     if (at_end_z) keep_within(grid.z, to_z, stays);
-                    SimdVector part = stays;
+                    ParticleVector part = stays;
                     if (any_simd(stays < here)) {
-                        const SimdVector first =
-                            first_part(d_x, D_x, low_x, high_x, d_z, D_z, low_z, high_z);
+                        const ParticleVector first =
+                            first_part(d_x, D_x, ParticleReal(low_x), ParticleReal(high_x), d_z,
+                                       D_z, ParticleReal(low_z), ParticleReal(high_z));
                         part = stays < here ? first : stays;
-                        for (int k = 0; k < simd_width; ++k) {
+                        for (int k = 0; k < lanes; ++k) {
                             leaving[leaving_count] = p + k;
                             leaving_count += k < count && stays[k] == 0.0;
                         }
                     }
-                    sums.add(d_x, d_z, part * D_x, part * D_z, part * way * u.y * (1 / dt));
+                    sums.add(d_x, d_z, part * D_x, part * D_z, part * way * u.y * per_step);
                     x = stays > 0.0 ? to_x : x;
                     z = stays > 0.0 ? to_z : z;
                     store_simd(x, &particles.x_p[p], count);
@@ -170,7 +184,8 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     store_simd(u.y, &particles.uy_p[p], count);
                     store_simd(u.z, &particles.uz_p[p], count);
                 }
-                tile.add(column, row, sums, [](const SimdVector& sum) { return simd_sum(sum); });
+                tile.add(column, row, sums,
+                         [](const ParticleVector& sum) { return simd_sum(sum); });
 
                 // Cut the trajectories of the others where they cross from cell to cell, take them
                 // out, and let the last of the cell step in.
@@ -180,19 +195,23 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     const Velocity<double> u{particles.ux_p[p], particles.uy_p[p],
                                              particles.uz_p[p]};
                     const double way = dt * inverse_gamma(u, per_c_squared);
-                    Trajectory x{column, (particles.x_p[p] - x_anchor) * per_dx,
-                                 way * u.x * per_dx};
-                    Trajectory z{row, (particles.z_p[p] - z_anchor) * per_dz, way * u.z * per_dz};
+                    const double x_p = particles.x_p[p], z_p = particles.z_p[p];
+                    Trajectory x{column, (x_p - x_anchor) * per_dx,
+                                 (double(ParticleReal(x_p + way * u.x)) - x_p) * per_dx};
+                    Trajectory z{row, (z_p - z_anchor) * per_dz,
+                                 (double(ParticleReal(z_p + way * u.z)) - z_p) * per_dz};
                     if (!(std::fabs(x.D) <= 1 && std::fabs(z.D) <= 1)) {
                         ++lost[number];
                         continue;
                     }
                     deposit_current<l>(grid, way * u.y / dt, x, z, tile);
-                    const double to_x = x.end(grid.x), to_z = z.end(grid.z);
+                    const ParticleReal to_x = carried(grid.x, x.end(grid.x)),
+                                       to_z = carried(grid.z, z.end(grid.z));
                     crossing.to_cell.push_back(cell_of<l>(grid, to_x, to_z));
-                    crossing.quantities.push_back({to_x, to_z, x.sign * u.x, u.y, z.sign * u.z});
+                    crossing.quantities.push_back({to_x, to_z, ParticleReal(x.sign * u.x),
+                                                   ParticleReal(u.y), ParticleReal(z.sign * u.z)});
                     --last;
-                    for (std::vector<double>* q : particles.all()) (*q)[p] = (*q)[last];
+                    for (std::vector<ParticleReal>* q : particles.all()) (*q)[p] = (*q)[last];
                 }
                 crossings.staying[cell] = int(last - begin);
             }

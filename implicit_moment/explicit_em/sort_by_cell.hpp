@@ -31,7 +31,7 @@ namespace implicit_moment {
 ///         sorted already keep their order.
 template <int l>
 inline void sort_by_cell(const Grid& grid, SortScratch& scratch, Particles& particles) {
-    const double *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
+    const ParticleReal *x_p = particles.x_p.data(), *z_p = particles.z_p.data();
     sort_by_key(
         Stencil<l>::cells(grid.x) * Stencil<l>::cells(grid.z),
         [=, &grid](long p) { return cell_of<l>(grid, x_p[p], z_p[p]); }, scratch, particles);
@@ -75,16 +75,16 @@ inline void for_each_arrival(const Crossings& crossings, long tile, long begin, 
 /// now, within the new range of the tile.
 /// in:     first, where cells began; below and above, what stood outside of the new range
 inline void move_cells(long begin, long end, const std::vector<int>& first,
-                       const Crossings& crossings, const std::vector<double>& below,
-                       const std::vector<double>& above, double* q) {
+                       const Crossings& crossings, const std::vector<ParticleReal>& below,
+                       const std::vector<ParticleReal>& above, ParticleReal* q) {
     const std::vector<int>&staying = crossings.staying, &next = crossings.first_next;
     // What of a cell stood in [from, to), whose numbers are at `copy`.
-    const auto move = [&](long cell, const double* copy, long from, long to) {
+    const auto move = [&](long cell, const ParticleReal* copy, long from, long to) {
         const long a = std::max(long(first[cell]), from),
                    b = std::min(long(first[cell] + staying[cell]), to);
         if (a < b)
             std::memmove(q + next[cell] + (a - first[cell]), copy + (a - from),
-                         std::size_t(b - a) * sizeof(double));
+                         std::size_t(b - a) * sizeof(ParticleReal));
     };
     const long from = next[begin], to = next[end];
     for (long cell = end - 1; cell >= begin; --cell)
@@ -126,7 +126,7 @@ inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particl
 
     const auto quantities = particles.all();
     const std::size_t most = std::max(first[cells], next[cells]);
-    for (std::vector<double>* q : quantities) {
+    for (std::vector<ParticleReal>* q : quantities) {
         if (most > q->capacity()) q->reserve(most + most / 10);
         q->resize(most);
     }
@@ -134,7 +134,7 @@ inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particl
         const long end_below = std::min(first[end], next[begin]),
                    begin_above = std::max(first[begin], next[end]);
         for (std::size_t a = 0; a < quantities.size(); ++a) {
-            const double* q = quantities[a]->data();
+            const ParticleReal* q = quantities[a]->data();
             Crossings::OfTile& room = crossings.tiles[tile];
             room.below[a].assign(q + first[begin], q + std::max<long>(first[begin], end_below));
             room.above[a].assign(q + std::min<long>(first[end], begin_above), q + first[end]);
@@ -146,14 +146,14 @@ inline void sort_by_cell(long per_tile, Crossings& crossings, Particles& particl
             detail::move_cells(begin, end, first, crossings, room.below[a], room.above[a],
                                quantities[a]->data());
         detail::for_each_arrival(crossings, tile, begin, end,
-                                 [&](int cell, const std::array<double, 5>& of_particle) {
+                                 [&](int cell, const std::array<ParticleReal, 5>& of_particle) {
                                      const long p = next[cell] + crossings.staying[cell]++;
                                      for (std::size_t a = 0; a < quantities.size(); ++a)
                                          (*quantities[a])[p] = of_particle[a];
                                  });
     });
     first.swap(next);
-    for (std::vector<double>* q : quantities) q->resize(first[cells]);
+    for (std::vector<ParticleReal>* q : quantities) q->resize(first[cells]);
 }
 
 /// Sorts all species after the push.

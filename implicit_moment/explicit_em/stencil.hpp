@@ -25,7 +25,7 @@ namespace implicit_moment {
 /// nearest node), in cells:
 ///     node(0..l)   = S^(l) to the nodes, from the lowest that it touches
 ///     half(0..l-1) = S^(l-1) to the midpoints between them
-/// Real is double or SimdVector.
+/// Real is double or ParticleVector.
 /// exact:  d node(k) / dd = half(k-1) - half(k), from which charge conservation follows.
 template <int l, class Real>
 struct StencilWeights;
@@ -36,7 +36,7 @@ struct StencilWeights<1, Real> {
 
     explicit StencilWeights(const Real& d) : linear{1 - d, d} {}
     const Real& node(int k) const { return linear[k]; }
-    static constexpr double half(int) { return 1; }
+    static constexpr NumberOf<Real> half(int) { return 1; }
 };
 
 template <class Real>
@@ -64,10 +64,11 @@ struct Stencil {
     }
 
     /// A position in cells from the low border of cell 0: its whole part is the cell. in: per_spacing,
-    /// 1 over the spacing; Real is double or SimdVector
+    /// 1 over the spacing; Real is double or ParticleVector
     template <class Real>
     static Real from_border(const common::Axis& axis, double per_spacing, const Real& x) {
-        return (x - axis.low) * per_spacing - low;
+        using Number = NumberOf<Real>;
+        return (x - Number(axis.low)) * Number(per_spacing) - Number(low);
     }
 
     /// The borders of a cell within the mesh: nothing is behind a wall.

@@ -15,8 +15,8 @@
 namespace implicit_moment {
 
 /// The components that are stored at index (i, j): each at its own place of the staggered mesh.
-struct alignas(64) NodeField {
-    double E_x, E_y, E_z, B_x, B_y, B_z;
+struct alignas(8 * sizeof(ParticleReal)) NodeField {
+    ParticleReal E_x, E_y, E_z, B_x, B_y, B_z;
 };
 
 /// grid.size() records, ghosts included.
@@ -54,7 +54,8 @@ inline void interleave_field(const Grid& grid, const SmoothingSettings& smoothin
         grid.size(),
         [&](int, long begin, long end) {
             for (long n = begin; n < end; ++n) {
-                interleaved[n] = {E_x[n], E_y[n], E_z[n], B_x[n], B_y[n], B_z[n]};
+                interleaved[n] = {ParticleReal(E_x[n]), ParticleReal(E_y[n]), ParticleReal(E_z[n]),
+                                  ParticleReal(B_x[n]), ParticleReal(B_y[n]), ParticleReal(B_z[n])};
             }
         },
         grid.size());

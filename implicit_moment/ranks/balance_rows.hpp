@@ -32,11 +32,11 @@ inline void hand_over(const Division& after, long per_piece, Particles& particle
         for (long cell = begin; cell < end; ++cell) next[cell] += int(of_rank[cell - begin]);
     std::exclusive_scan(next.begin(), next.end(), next.begin(), 0);
 
-    for (std::vector<double>* q : particles.all()) {
+    for (std::vector<ParticleReal>* q : particles.all()) {
         for (const int k : peers)
             to[k].assign(q->begin() + first[cell_of(after.first[k])],
                          q->begin() + first[cell_of(after.first[k + 1])]);
-        std::vector<double>().swap(*q);
+        std::vector<ParticleReal>().swap(*q);
         common::exchange(peers, to, from);
         q->reserve(next[cells]);
         std::vector<long> taken(peers.size(), 0);

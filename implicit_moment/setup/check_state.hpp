@@ -31,7 +31,7 @@ inline void validate_profile(const Case& parameters, long step, const UnitFluxPr
 template <class Sort>
 void validate_state(const Case& parameters, long step, const Sort& sort, Checkpoint& checkpoint) {
     const Grid& grid = parameters.grid;
-    const auto on_mesh = [](const common::Axis& axis, const std::vector<double>& positions) {
+    const auto on_mesh = [](const common::Axis& axis, const std::vector<ParticleReal>& positions) {
         return common::all_within(positions, axis.low, axis.high());
     };
     // What ranks have of the particles, all together, so that all refuse or none.
@@ -44,7 +44,7 @@ void validate_state(const Case& parameters, long step, const Sort& sort, Checkpo
     const long expected = scales_of(parameters).particles, count = of_all({plasma.count()})[0];
     refuse(count != expected, "it has ", count, " particles, and the case ", expected);
     for (Particles& s : plasma.species) {
-        for (const std::vector<double>* column : s.all())
+        for (const std::vector<ParticleReal>* column : s.all())
             refuse(of_all({column->size() != s.x_p.size()})[0] > 0, s.name,
                    ": its particles lack components");
         refuse(of_all({!on_mesh(grid.x, s.x_p) || !on_mesh(grid.z, s.z_p)})[0] > 0, s.name,

@@ -131,11 +131,11 @@ struct State {
 template <class Archive>
 void archive(Archive& a, State& state, common::Share share) {
     for (Particles& s : state.plasma.species) {
-        a(s.name + ".x_p", common::OfAllRanks<double>{s.x_p, share});
-        a(s.name + ".z_p", common::OfAllRanks<double>{s.z_p, share});
-        a(s.name + ".ux_p", common::OfAllRanks<double>{s.ux_p, share});
-        a(s.name + ".uy_p", common::OfAllRanks<double>{s.uy_p, share});
-        a(s.name + ".uz_p", common::OfAllRanks<double>{s.uz_p, share});
+        a(s.name + ".x_p", common::OfAllRanks<ParticleReal>{s.x_p, share});
+        a(s.name + ".z_p", common::OfAllRanks<ParticleReal>{s.z_p, share});
+        a(s.name + ".ux_p", common::OfAllRanks<ParticleReal>{s.ux_p, share});
+        a(s.name + ".uy_p", common::OfAllRanks<ParticleReal>{s.uy_p, share});
+        a(s.name + ".uz_p", common::OfAllRanks<ParticleReal>{s.uz_p, share});
         a(s.name + ".first_of_node", common::SumOverRanks{s.first_of_node});
     }
     a("E", state.field.E.all);

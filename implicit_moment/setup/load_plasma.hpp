@@ -129,13 +129,16 @@ inline Plasma load_harris(const Case& parameters, common::Share share = {}) {
                                grid.x.high());
                 z = from_middle[1];
             }
-            ions.x_p[p] = electrons.x_p[p] = x;
-            ions.z_p[p] = electrons.z_p[p] = z_middle + z;
+            ions.x_p[p] = electrons.x_p[p] = carried(grid.x, x);
+            ions.z_p[p] = electrons.z_p[p] = carried(grid.z, z_middle + z);
             const auto set_u = [&](Particles& s, double v, double u_s,
                                    std::array<unsigned, 3> primes) {
-                s.ux_p[p] = v * load.gaussian(part, primes[0], index) + (along_x ? u_s : 0);
-                s.uy_p[p] = v * load.gaussian(part, primes[1], index) + (along_x ? 0 : u_s);
-                s.uz_p[p] = v * load.gaussian(part, primes[2], index);
+                const auto gaussian = [&](unsigned prime) {
+                    return v * load.gaussian(part, prime, index);
+                };
+                s.ux_p[p] = ParticleReal(gaussian(primes[0]) + (along_x ? u_s : 0));
+                s.uy_p[p] = ParticleReal(gaussian(primes[1]) + (along_x ? 0 : u_s));
+                s.uz_p[p] = ParticleReal(gaussian(primes[2]));
             };
             set_u(ions, sheet.v_i, drifting ? sheet.u_i : 0, {5, 7, 11});
             set_u(electrons, sheet.v_e, drifting ? sheet.u_e : 0, {13, 17, 19});
@@ -181,14 +184,16 @@ inline Plasma load_uniform(const Case& parameters, common::Share share = {}) {
                 const double x = grid.x.low + grid.x.length * load.uniform(0, 2, number);
                 const double z = grid.z.low + grid.z.length * load.uniform(0, 3, number);
                 const double phase = mode_phase(parameters, x, z);
-                particles.x_p[p] = x;
-                particles.z_p[p] = z;
-                particles.ux_p[p] = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree);
-                particles.uy_p[p] = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree);
-                particles.uz_p[p] = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
-                if (v_x > 0) particles.ux_p[p] += v_x * load.gaussian(purpose, 5, number);
-                if (v_y > 0) particles.uy_p[p] += v_y * load.gaussian(purpose, 7, number);
-                if (v_z > 0) particles.uz_p[p] += v_z * load.gaussian(purpose, 11, number);
+                particles.x_p[p] = carried(grid.x, x);
+                particles.z_p[p] = carried(grid.z, z);
+                double u_x = s.drift_x + s.wave_x * std::cos(phase + s.phase_x * degree),
+                       u_y = s.drift_y + s.wave_y * std::cos(phase + s.phase_y * degree),
+                       u_z = s.drift_z + s.wave_z * std::cos(phase + s.phase_z * degree);
+                if (v_x > 0) u_x += v_x * load.gaussian(purpose, 5, number);
+                if (v_y > 0) u_y += v_y * load.gaussian(purpose, 7, number);
+                if (v_z > 0) u_z += v_z * load.gaussian(purpose, 11, number);
+                particles.ux_p[p] = ParticleReal(u_x), particles.uy_p[p] = ParticleReal(u_y),
+                particles.uz_p[p] = ParticleReal(u_z);
             }
         });
     }

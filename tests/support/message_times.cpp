@@ -1,5 +1,5 @@
 // How long messages between two ranks take, by the functions with which the programs exchange them.
-// Run:   mpirun -n 2 build/mpi/bench/message_times      (make MPI=1 bench)
+// Run:   mpirun -n 2 build/mpi/benches/message_times      (make MPI=1 bench)
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -23,7 +23,7 @@ measure() {
         END { printf "%-52s %12.3e %12.3e %9.2f %13.1f%%\n", title, best[1], best[2], best[2] / best[1], 100 * share[2] }' "$scratch/all"
 }
 build=$1
-mpirun -n 2 "$build/bench/message_times"
+mpirun -n 2 "$build/benches/message_times"
 printf '\n%-52s %12s %12s %9s %14s\n' 'particle-steps/s' 'one rank' 'two ranks' 'speed-up' 'communication'
 measure 'explicit_em, the slide: 512 x 256, 9.12e6 particles' explicit_em implicit_moment/cases/gem_explicit.toml time.end=1.8 output.fields_interval=0
 measure 'cic, 128 x 64 cells, 1e6 particles' cic cic/cases/two_stream_2d.toml species.right.particles_per_cell=64 \
