@@ -88,37 +88,53 @@ class Recorder {
     }
 
    private:
-    // Whether nothing goes through the ends of the mesh: walls reflect, and are at 0 or floating.
+    // Whether no particle goes through the ends of the mesh: walls reflect.
     bool keeps_energy() const {
         for (std::size_t k = 0; k < 4; ++k) {
             const bool there = (k < 2 ? parameters_.boundary_x : parameters_.boundary_z) == "wall";
-            const WallCase& wall = parameters_.walls[k];
-            if (there && (wall.particles != "reflect" || wall.potential != 0)) return false;
+            if (there && parameters_.walls[k].particles != "reflect") return false;
         }
         return true;
+    }
+
+    // The energy less what batteries have given that hold walls at their potentials, sum V (Q - Q_0).
+    std::vector<double> energy_without_batteries(const common::History& history) const {
+        auto energy = history.column("energy");
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double V = parameters_.walls[k].potential;
+            if (V == 0) continue;
+            const auto Q = history.column(std::string("charge_") + wall_names[k]);
+            const double area = (k < 2 ? parameters_.grid.z : parameters_.grid.x).length;
+            for (std::size_t n = 0; n < Q.size(); ++n) energy[n] -= V * area * (Q[n] - Q[0]);
+        }
+        return energy;
     }
 
     // Whether energy was kept, of its start or, where that is nothing, of its largest.
     void judge_energy(const common::History& history, common::Summary& summary) const {
         if (!keeps_energy() || parameters_.gauss_sign < 0) return;
-        const auto energy = history.column("energy");
+        const auto energy = energy_without_batteries(history);
         double change = 0, largest = 0;
         for (const double one : energy) {
             change = std::max(change, std::fabs(one - energy.front()));
             largest = std::max(largest, std::fabs(one));
         }
         const double scale = energy.front() > 1e-3 * largest ? energy.front() : largest;
+        const bool conserving = parameters_.scheme().energy_conserving;
         summary.hint(
-            "the mesh heats what it does not resolve, and the leapfrog what swings within a step: "
-            "raise grid.cells_x, take method.scheme = \"energy\" or method.weighting = \"tsc\", or "
-            "lower time.dt");
-        // Of a wave on nodes the momentum scheme turns cos^2(k dx/2) into motion.
+            sentence("the mesh heats what it does not resolve, few particles are noise, and the "
+                     "leapfrog heats what swings within a step: raise grid.cells_x or "
+                     "particles_per_cell, take ",
+                     conserving ? "" : "method.scheme = \"energy\" or ",
+                     "method.weighting = \"tsc\", or lower time.dt"));
+        // Of the field of a wave on nodes the momentum scheme turns cos^2(k dx/2) into motion.
         double limit = 0.05;
-        if (!parameters_.scheme().energy_conserving) {
+        if (!conserving && comparison_.follows_mode) {
             const WaveVector k = wave_vector(parameters_, comparison_.recorded_mode_x(parameters_),
                                              parameters_.mode_z);
-            limit += std::pow(std::sin(0.5 * k.x * parameters_.grid.x.spacing()), 2) +
-                     std::pow(std::sin(0.5 * k.z * parameters_.grid.z.spacing()), 2);
+            limit += (std::pow(std::sin(0.5 * k.x * parameters_.grid.x.spacing()), 2) +
+                      std::pow(std::sin(0.5 * k.z * parameters_.grid.z.spacing()), 2)) *
+                     std::min(1.0, history.largest("field") / scale);
         }
         if (scale > least_energy_)
             summary.result_at_most("energy_change", change / scale, "", limit,

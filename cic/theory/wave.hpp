@@ -196,11 +196,50 @@ inline std::string likely_driven_by_mesh(const Case& parameters) {
                : driven(2, parameters.grid.z, &SpeciesCase::drift_z);
 }
 
+/// By how much the leapfrog changes a wave, relative: (omega dt)^2/24, where it grows with the frequency of
+/// the plasma, and (Omega dt)^2/12 of a gyration.
+inline double change_by_leapfrog(const Case& parameters, const Theory& theory) {
+    double omega2 = std::norm(theory.omega), gyration = 0;
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        if (theory.omega.imag() > 0)
+            omega2 = std::max(omega2, s.charge * s.charge * s.mean_density() / s.mass);
+        if (parameters.magnetized())
+            gyration = std::max(gyration, std::fabs(s.charge) * parameters.B.size() / s.mass);
+    }
+    const double dt2 = parameters.dt * parameters.dt;
+    return std::max(omega2 * dt2 / 24, gyration * gyration * dt2 / 12);
+}
+
+/// Where another mode of the box along x grows by exp(5) or more until the end: that, and what to change; else
+/// nothing. When it saturates it drives all modes.
+inline std::string faster_mode(const Case& parameters, const Theory& theory) try {
+    if (parameters.magnetized() || parameters.has_distributions() ||
+        wave_vector(parameters, theory.mode_x, theory.mode_z).x == 0)
+        return "";
+    Theory fastest;
+    fastest.omega = {0, std::max(theory.omega.imag(), 5 / parameters.end)};
+    Case any = parameters;
+    any.near = 0, any.model = "plasma";
+    for (long m = 1; m <= 32 && 2 * m < parameters.grid.x.cells; ++m) {
+        if (m == std::labs(theory.mode_x)) continue;
+        const Theory other = theory_of_wave(any, m, 0, fastest.omega.imag());
+        if (other.mode_x != 0 && other.omega.imag() > fastest.omega.imag()) fastest = other;
+    }
+    if (fastest.mode_x == 0) return "";
+    return sentence(mode_text(fastest.mode_x, 0), " of this box grows with ", fastest.omega.imag(),
+                    theory.omega.imag() > 0 ? ", faster, " : ", ",
+                    "and drives all others when it saturates: shorten the box to one wavelength of "
+                    "the mode that is followed, or the run");
+} catch (const common::InputError&) {  // none was found
+    return "";
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
 /// in:     field, the amplitude of the wave without noise; noise of random numbers in it
 inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
                                 double noise) {
-    const double step = std::abs(theory.omega) * parameters.dt,
+    const double by_step = change_by_leapfrog(parameters, theory),
                  k_dx =
                      wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
                  k_dz =
@@ -213,16 +252,24 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
     const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
                                                       : parameters.frequency_tolerance,
                  theta = std::max(k_dx, k_dz), slower = 2 - std::cos(k_dx / 2) - std::cos(k_dz / 2);
+    const bool conserving = parameters.scheme().energy_conserving,
+               by_mesh =
+                   parameters.model != "mesh" && !conserving && (theta > 0.5 || slower > tolerance);
     const std::string driven = likely_driven_by_mesh(parameters),
                       also = driven.empty() ? "" : "; and " + driven;
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
+    const std::string leapfrog = sentence("the leapfrog changes the wave by ", by_step,
+                                          " or so: lower time.dt", exact, also);
     if (noise > 0.1 * field)
         return sentence("random particles have up to ", noise / field,
                         " of the seeded field in this mode: raise amplitude or particles_per_cell, "
                         "or take loading = \"quiet\"");
+    if (parameters.model != "mesh" && by_step > tolerance && (!by_mesh || by_step > slower))
+        return leapfrog;
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) return bouncing;
-    if (parameters.model != "mesh" && (theta > 0.5 || slower > tolerance))
+    if (const std::string faster = faster_mode(parameters, theory); !faster.empty()) return faster;
+    if (by_mesh)
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
                         ", and the mesh changes the wave by 1 - cos(k dx/2)",
                         k_dx > 0 && k_dz > 0 ? " of both directions = " : " = ", slower,
@@ -231,9 +278,7 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         : k_dx > k_dz        ? "grid.cells_x"
                                              : "grid.cells_z",
                         exact, also);
-    if (parameters.model != "mesh" && step > 0.3)
-        return sentence("|omega| dt is ", step,
-                        ", and the leapfrog changes the wave: lower time.dt", exact, also);
+    if (parameters.model != "mesh" && by_step > 0.5 * tolerance) return leapfrog;
     if (!driven.empty()) return driven;
     if (theory.hidden != 0.0)
         return sentence("another wave of this mode, omega = ", theory.hidden.real(),
@@ -278,6 +323,18 @@ inline std::string other_wave(const Case& parameters, const Theory& theory,
                     ": take theory.near = ", other, ", or a perturbation that has less of it");
 } catch (const common::InputError&) {  // none was found
     return "";
+}
+
+/// What a wave that theory does not damp loses: at most 2e-3 of omega, per time.
+inline void judge_undamped(const Case& parameters, const common::MeasuredMode& seen, double growth,
+                           const std::string& where, Summary& summary) {
+    if (parameters.scheme().energy_conserving)
+        summary.hint(
+            "on the energy-conserving mesh a cold wave whose particles go from cell to cell feeds "
+            "others: lower the amplitude, raise grid.cells_x, or take method.scheme = "
+            "\"momentum\"");
+    summary.result("damping", {-seen.growth(), seen.growth_error()}, omega_p_unit, 0 - growth,
+                   2e-3 * seen.frequency(), where);
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping by
@@ -338,8 +395,18 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         sentence("the perturbation begins with ", early, ", above the field of the onset, ", level,
                  ", and only ", theory.seed, " of it is the growing wave: lower the amplitude ",
                  early / level, " times or more");
-    if (grows && theory.seed > 0 && early > level && noise < level)
-        summary.hint(too_high);
+    // What begins above the onset has saturated before it can be measured.
+    const std::string saturated =
+        !grows || !(early > level) ||
+                std::fabs(seen.growth() - growth) <=
+                    seen.growth_error() + parameters.growth_tolerance * growth
+            ? ""
+        : noise < level && theory.seed > 0
+            ? too_high
+            : sentence("noise begins with ", early, ", above the field of the onset, ", level,
+                       ": take loading = \"quiet\", or raise particles_per_cell");
+    if (!saturated.empty())
+        seen.found = false, seen.reason = saturated, seen.over = false;
     else if (grows && seen.found && folds < 1)
         summary.hint(sentence("the wave grows only by exp(", folds, ") in the ",
                               frequency * (seen.end - seen.begin) / (2 * pi),
@@ -437,6 +504,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     if (damped)
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
+    else if (seen.found)
+        judge_undamped(parameters, seen, growth, where, summary);
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.

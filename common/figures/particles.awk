@@ -34,8 +34,7 @@ function page() {
 }
 
 END {
-    n = split(names, list, " ")
-    for (i = 1; i < n; i += 2) if (number[list[i]]) entry[++entries] = list[i + 1]
+    split(names, list, " "); for (i = 1; i in list; i += 2) if (number[list[i]]) entry[++entries] = list[i + 1]
     for (i = 1; i <= entries && entries <= 8; i++) if (i - 1 in seen) key = key sprintf(", keyentry with points pt 7 ps 1 lc rgb color_of(%d) title '%s'", i - 1, plain(entry[i]))
     other = number["z"] ? number["z"] : number["y"]
     x = number["x"]

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "common/ranks.hpp"
 #include "common/run/formula.hpp"
 
 namespace common {
@@ -208,6 +209,9 @@ void ParameterTable::make_item(const Setting& setting) {
         if (list.items.size() == most_items)
             throw InputError(setting.place + ": more than " + std::to_string(most_items) +
                              " items in [" + list.name + "]: take some out");
+        if (setting.place.starts_with("command line") && !list.items.empty() && is_first_rank())
+            std::fprintf(stderr, "note: the case has no [%s.%s]; the command line adds it\n",
+                         list.name.c_str(), item.c_str());
         list.items.push_back(item);
         groups_.push_back({list.name + " '" + item + "'", {}});
         list.append(item);

@@ -15,6 +15,7 @@
 #include <ctime>
 #include <filesystem>
 #include <new>
+#include <regex>
 
 #include "common/parallel.hpp"
 #include "common/run/machine.hpp"
@@ -86,24 +87,13 @@ void listen_to(int signal) {
 }
 
 // Whether a file of this name is one that a run writes.
-bool is_ours(std::string name) {
-    const std::string partial = ".partial";
-    if (name.ends_with(partial)) name.resize(name.size() - partial.size());
-    for (const char* plain : {"case.toml", "history.dat", "summary.json", "spectrum.dat",
-                              "profile.dat", "pack.txt", "fields.pvd", "particles.pvd"}) {
-        if (name == plain) return true;
-    }
-    for (const char* start : {"fields_", "particles_", "profile_", "phase_", "velocities_",
-                              "fringes_", "grains_", "checkpoint_"}) {
-        if (!name.starts_with(start)) continue;
-        const std::size_t digits = std::string(start).size();
-        const std::size_t ending =
-            std::min(name.find_first_not_of("0123456789", digits), name.size());
-        if (ending < digits + 6) return false;
-        for (const char* known : {".dat", ".vti", ".vtp", ".h5", ".bin"})
-            if (name.compare(ending, std::string::npos, known) == 0) return true;
-    }
-    return false;
+bool is_ours(const std::string& name) {
+    static const std::regex ours(
+        "(case.toml|history.dat|summary.json|spectrum.dat|profile.dat|pack.txt|fields.pvd|"
+        "particles.pvd|"
+        "(fields|particles|profile|phase|velocities|fringes|grains|checkpoint)_[0-9]{6,}"
+        "[.](dat|vti|vtp|h5|bin))([.]partial)?");
+    return std::regex_match(name, ours);
 }
 
 // A message as one line that a terminal can show.

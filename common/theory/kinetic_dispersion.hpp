@@ -120,7 +120,7 @@ DispersionRoot root_near(const Dispersion& D, Complex guess) {
 }
 
 /// Of the roots that are reached from all guesses the one with the largest Im omega; of roots that
-/// grow at the same rate the one with the largest Re omega.
+/// grow at the same rate the one with the largest |Re omega|, to the right of two as large.
 template <class Dispersion>
 DispersionRoot fastest_growing_root(const Dispersion& D, const std::vector<Complex>& guesses) {
     DispersionRoot best;
@@ -129,9 +129,10 @@ DispersionRoot fastest_growing_root(const Dispersion& D, const std::vector<Compl
         if (!root.found) continue;
         const double same = 1e-9 * std::abs(root.omega);
         const double lead = root.omega.imag() - best.omega.imag();
-        const bool faster = lead > same;
-        const bool further = std::abs(lead) <= same && root.omega.real() > best.omega.real();
-        if (!best.found || faster || further) best = root;
+        const double away = std::abs(root.omega.real()) - std::abs(best.omega.real());
+        const bool further =
+            std::abs(lead) <= same && (std::abs(away) > same ? away > 0 : root.omega.real() > 0);
+        if (!best.found || lead > same || further) best = root;
     }
     return best;
 }
