@@ -70,8 +70,9 @@ combinations=$(echo $lists | awk -v pattern="${SWEEP_NAME:-}" '
 # One line of the shell for each run.
 only=${SWEEP_ONLY:-1/1}
 commands=$folder/commands${SWEEP_ONLY:+.${only%/*}}
-echo "$combinations" | awk -v start="$program $case --threads 1 --resume --quiet --out $folder/" -v fixed="$fixed" -v k="${only%/*}" -v n="${only#*/}" \
-    '(NR - k) % n == 0 { name = $1; $1 = ""; print start name $0 " " fixed }' > "$commands"
+word() { printf "'%s'" "$(printf %s "$1" | sed "s/'/'\\\\''/g")"; }
+echo "$combinations" | start="$(word "$program") $(word "$case") --threads 1 --resume --quiet --out $(word "$folder/")" \
+    awk -v fixed="$fixed" -v k="${only%/*}" -v n="${only#*/}" '(NR - k) % n == 0 { name = $1; $1 = ""; print ENVIRON["start"] name $0 " " fixed }' > "$commands"
 
 status=0 log=
 if command -v parallel >/dev/null; then
@@ -80,7 +81,7 @@ if command -v parallel >/dev/null; then
     parallel --joblog "$log" ${PARALLEL_OPTIONS:-} < "$commands" || status=$?
 else
     echo "note: GNU parallel is not installed (make deps-sweep): one run follows the other" >&2
-    while read -r line; do $line </dev/null || status=$((status + 1)); done < "$commands"
+    while read -r line; do sh -c "$line" </dev/null || status=$((status + 1)); done < "$commands"
 fi
 [ $status = 0 ] || echo "not all of the $(grep -c . "$commands") runs ended as they should: see ${log:+$log, and }what they said above" >&2
 
@@ -89,9 +90,9 @@ names=$(echo "$combinations" | sed 's/ .*//')
 { echo "$names"; find "$folder" -mindepth 1 -maxdepth 1 -type d | sed 's|.*/||' | sort -V; } | awk '!seen[$0]++' | while read -r name; do
     [ -f "$folder/$name/summary.json" ] || continue
     lines=$(awk -f common/json_lines.awk "$folder/$name/summary.json")
-    echo "= $folder/$name/case.toml $(printf '%s\n' "$lines" | sed -n 's/^command //p')"
+    echo "= $name/case.toml $(printf '%s\n' "$lines" | sed -n 's/^command //p')"
     printf '%s\n' "$lines" | awk -f common/figures/results.awk | sed 1d
-done | awk -v lists="$lists" '
+done | folder=$folder awk -v lists="$lists" '
     function add_key(word) {
         if (!match(word, /^[a-z_]+[.][A-Za-z0-9_.-]+=/)) return
         word = substr(word, 1, RLENGTH - 1)
@@ -106,7 +107,7 @@ done | awk -v lists="$lists" '
     }
     function value_of(row, k,    text) { text = given[row, k]; gsub(/"/, "", text); gsub(/ /, "_", text); return text == "" ? "-" : text }
     BEGIN { n = split(lists, list, " "); for (i = 1; i <= n; i++) { add_key(list[i]) } asked = keys }
-    $1 == "=" { rows++; read_case($2); for (i = 3; i <= NF; i++) { add_key($i) } next }
+    $1 == "=" { rows++; read_case(ENVIRON["folder"] "/" $2); for (i = 3; i <= NF; i++) { add_key($i) } next }
     {
         if (!($1 in is_result)) { is_result[$1] = 1; results[++result_count] = $1 }
         cell[rows, $1] = $2 " " $3 " " $4 " " $6

@@ -73,7 +73,7 @@ inline Vector first_simd(long count) {
     return lanes;
 }
 
-/// Sum of the lanes, halves first: of eight ((0+4)+(2+6)) + ((1+5)+(3+7)).
+/// Sum of the lanes, halves first: of eight ((0+4)+(2+6)) + ((1+5)+(3+7)). Of one number, itself.
 template <class Vector>
 inline double simd_sum(const Vector& lanes) {
     double sum[lanes_of<Vector>];
@@ -82,6 +82,7 @@ inline double simd_sum(const Vector& lanes) {
         for (int l = 0; l < half; ++l) sum[l] += sum[l + half];
     return sum[0];
 }
+inline double simd_sum(double number) { return number; }
 
 /// Larger of a and b, |a| and the square root, lane by lane; the last of one number, too.
 inline SimdVector larger(const SimdVector& a, const SimdVector& b) { return a > b ? a : b; }

@@ -172,7 +172,7 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         std::printf("%d:%s\n", n + 1, finer.c_str()), std::fflush(stdout);
         const int ended = std::system(line.c_str());
         status = std::max(status, WIFEXITED(ended) ? WEXITSTATUS(ended) : 130);
-        if (status > 1) std::exit(status);
+        if (status > 1) break;
         if (!command.dry_run)
             found.push_back(nlohmann::ordered_json::parse(read_file(folder + "/summary.json")));
     }

@@ -175,7 +175,7 @@ std::string ParameterTable::nearest(const std::string& name) const {
     // The right key in the wrong section is the other common slip.
     const std::string key = name.substr(name.rfind('.') + 1);
     for (const Entry& entry : entries_)
-        if (least > 2 && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
+        if ((least > 2 || key == name) && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
     return best;
 }
 

@@ -73,14 +73,14 @@ struct CurrentTile {
     }
     long index(long i, long j) const { return (j - first_row) * columns + i + margin; }
 
-    /// Adds the sums of one cell. in: sum, which makes one number of a Real.
-    template <int l, class Real, class Sum>
-    void add(long cell_x, long cell_z, const CurrentSums<l, Real>& sums, const Sum& sum) {
+    /// Adds the sums of one cell.
+    template <int l, class Real>
+    void add(long cell_x, long cell_z, const CurrentSums<l, Real>& sums) {
         const long corner = index(cell_x + Stencil<l>::first, cell_z + Stencil<l>::first);
         const auto add_to = [&](std::vector<double>& J, const auto& of_cell) {
             for (long j = 0; j < std::ssize(of_cell); ++j) {
                 for (long i = 0; i < std::ssize(of_cell[0]); ++i)
-                    J[corner + j * columns + i] += sum(of_cell[j][i]);
+                    J[corner + j * columns + i] += simd_sum(of_cell[j][i]);
             }
         };
         add_to(J_x, sums.J_x), add_to(J_y, sums.J_y), add_to(J_z, sums.J_z);
@@ -165,7 +165,7 @@ inline void deposit_current(const Grid& grid, double v_y, Trajectory& x, Traject
         if (segment > 0) {
             CurrentSums<l, double> sums;
             sums.add(x.d, z.d, part * x.D, part * z.D, part * left * v_y);
-            tile.add(x.cell, z.cell, sums, [](double sum) { return sum; });
+            tile.add(x.cell, z.cell, sums);
         }
         x.advance(part), z.advance(part);
         left *= 1 - part;

@@ -54,22 +54,18 @@ inline void keep_within(const common::Axis& axis, const ParticleVector& x, Parti
     stays = x < not_below(axis.high()) ? stays : 0.0 * stays;
 }
 
-/// The part of a way within the cell, as deposit_current finds it.
-/// in:     d and D, start and displacement in cells; low and high, the borders of the cell
-inline ParticleVector first_part(const ParticleVector& d_x, const ParticleVector& D_x,
-                                 ParticleReal low_x, ParticleReal high_x, const ParticleVector& d_z,
-                                 const ParticleVector& D_z, ParticleReal low_z,
-                                 ParticleReal high_z) {
-    const auto to_border = [](const ParticleVector& d, const ParticleVector& D, ParticleReal low,
-                              ParticleReal high) {
-        const ParticleVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
-        return D == 0.0 ? 2.0 + D : to / way;
-    };
-    const ParticleVector x = to_border(d_x, D_x, low_x, high_x),
-                         z = to_border(d_z, D_z, low_z, high_z);
+/// The part of a way D, from d, until a border of the cell, in one direction [cells]; 2 of no way.
+inline ParticleVector to_border(const ParticleVector& d, const ParticleVector& D, ParticleReal low,
+                                ParticleReal high) {
+    const ParticleVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
+    return D == 0.0 ? 2.0 + D : to / way;
+}
+
+/// The part within the cell, as deposit_current finds it, of that in both directions.
+inline ParticleVector first_part(const ParticleVector& x, const ParticleVector& z) {
     ParticleVector part = x <= z ? x : z;
-    part = part > 0.0 ? part : 0.0 * d_x;
-    return part < 1.0 ? part : 1.0 + 0.0 * d_x;
+    part = part > 0.0 ? part : 0.0 * x;
+    return part < 1.0 ? part : 1.0 + 0.0 * x;
 }
 
 /// Room for the current, kept between steps; nothing of it is state.
@@ -89,16 +85,17 @@ template <int l>
 inline long move_particles(const InterleavedField& field, const Grid& grid, double dt,
                            const LeapfrogSettings& settings, Particles& particles,
                            Crossings& crossings, CurrentScratch& scratch, VectorField& J) {
-    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing();
-    const double half_kick = 0.5 * dt * particles.q_p / particles.m_p;
-    const double per_c_squared = settings.per_c_squared();
+    const double per_dx = 1 / grid.x.spacing(), per_dz = 1 / grid.z.spacing(),
+                 half_kick = 0.5 * dt * particles.q_p / particles.m_p,
+                 per_c_squared = settings.per_c_squared();
     // The same as particles have them.
-    constexpr int lanes = lanes_of<ParticleVector>;
+    using Vector = ParticleVector;
+    constexpr int lanes = lanes_of<Vector>;
     const auto cells_per_x = ParticleReal(per_dx), cells_per_z = ParticleReal(per_dz),
                kick = ParticleReal(half_kick), per_c2 = ParticleReal(per_c_squared),
                step = ParticleReal(dt), per_step = ParticleReal(1 / dt);
-    const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z);
-    const long tiles = tiles_of(rows);
+    const long columns = Stencil<l>::cells(grid.x), rows = Stencil<l>::cells(grid.z),
+               tiles = tiles_of(rows);
     std::vector<long> lost(tiles, 0);
     scratch.tiles.resize(tiles);
     const Division& of_ranks = particles.of_ranks;
@@ -114,8 +111,8 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
         std::vector<long> leaving;
         for (long row = first_row; row < last_row; ++row) {
             const double z_anchor = grid.z.at(double(row));
-            const double low_z = Stencil<l>::low_of(grid.z, row),
-                         high_z = Stencil<l>::high_of(grid.z, row);
+            const auto low_z = ParticleReal(Stencil<l>::low_of(grid.z, row)),
+                       high_z = ParticleReal(Stencil<l>::high_of(grid.z, row));
             const bool at_end_z = row == 0 || row == rows - 1;
             for (long column = 0; column < columns; ++column) {
                 const long cell = row * columns + column;
@@ -124,51 +121,47 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                 if (begin == end) continue;
                 const double x_anchor = grid.x.at(double(column));
                 const auto x_of_cell = ParticleReal(x_anchor), z_of_cell = ParticleReal(z_anchor);
-                const double low_x = Stencil<l>::low_of(grid.x, column),
-                             high_x = Stencil<l>::high_of(grid.x, column);
+                const auto low_x = ParticleReal(Stencil<l>::low_of(grid.x, column)),
+                           high_x = ParticleReal(Stencil<l>::high_of(grid.x, column));
                 const bool at_end_x = column == 0 || column == columns - 1;
                 const NodeField* corner =
                     &field[grid.index(column + Stencil<l>::first, row + Stencil<l>::first)];
                 leaving.resize(end - begin + lanes);
                 long leaving_count = 0;
 
-                CurrentSums<l, ParticleVector> sums;
+                CurrentSums<l, Vector> sums;
                 for (long p = begin; p < end; p += lanes) {
                     const long count = std::min<long>(end - p, lanes);
-                    ParticleVector x = load_simd<ParticleVector>(&particles.x_p[p], count);
-                    ParticleVector z = load_simd<ParticleVector>(&particles.z_p[p], count);
-                    Velocity<ParticleVector> u{
-                        load_simd<ParticleVector>(&particles.ux_p[p], count),
-                        load_simd<ParticleVector>(&particles.uy_p[p], count),
-                        load_simd<ParticleVector>(&particles.uz_p[p], count)};
-                    const ParticleVector d_x = (x - x_of_cell) * cells_per_x,
-                                         d_z = (z - z_of_cell) * cells_per_z;
-                    push<ParticleVector>(
-                        u, gather_field<l, ParticleVector>(corner, grid.stride(), d_x, d_z), kick,
-                        per_c2);
-                    const ParticleVector way = step * inverse_gamma(u, per_c2);  // dt / gamma
-                    const ParticleVector to_x = x + way * u.x, to_z = z + way * u.z;
+                    const auto load = [&](const std::vector<ParticleReal>& q) {
+                        return load_simd<Vector>(&q[p], count);
+                    };
+                    const Vector x = load(particles.x_p), z = load(particles.z_p);
+                    Velocity<Vector> u{load(particles.ux_p), load(particles.uy_p),
+                                       load(particles.uz_p)};
+                    const Vector d_x = (x - x_of_cell) * cells_per_x,
+                                 d_z = (z - z_of_cell) * cells_per_z;
+                    push<Vector>(u, gather_field<l, Vector>(corner, grid.stride(), d_x, d_z), kick,
+                                 per_c2);
+                    const Vector way = step * inverse_gamma(u, per_c2);  // dt / gamma
+                    const Vector to_x = x + way * u.x, to_z = z + way * u.z;
                     // As they have moved, rounded: then rho follows J to the last digit.
-                    const ParticleVector D_x = (to_x - x) * cells_per_x,
-                                         D_z = (to_z - z) * cells_per_z;
-                    const ParticleVector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
-                                         j = Stencil<l>::from_border(grid.z, per_dz, to_z);
+                    const Vector D_x = (to_x - x) * cells_per_x, D_z = (to_z - z) * cells_per_z;
+                    const Vector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
+                                 j = Stencil<l>::from_border(grid.z, per_dz, to_z);
 
                     // Move those that stay in the cell, note the others, and deposit all the way
                     // that they have within the cell.
-                    const ParticleVector here = first_simd<ParticleVector>(count);
-                    ParticleVector stays = here;
-                    stays = i >= ParticleReal(column) ? stays : 0.0 * stays;
+                    const Vector here = first_simd<Vector>(count);
+                    Vector stays = i >= ParticleReal(column) ? here : 0.0 * here;
                     stays = i < ParticleReal(column + 1) ? stays : 0.0 * stays;
                     stays = j >= ParticleReal(row) ? stays : 0.0 * stays;
                     stays = j < ParticleReal(row + 1) ? stays : 0.0 * stays;
                     if (at_end_x) keep_within(grid.x, to_x, stays);
                     if (at_end_z) keep_within(grid.z, to_z, stays);
-                    ParticleVector part = stays;
+                    Vector part = stays;
                     if (any_simd(stays < here)) {
-                        const ParticleVector first =
-                            first_part(d_x, D_x, ParticleReal(low_x), ParticleReal(high_x), d_z,
-                                       D_z, ParticleReal(low_z), ParticleReal(high_z));
+                        const Vector first = first_part(to_border(d_x, D_x, low_x, high_x),
+                                                        to_border(d_z, D_z, low_z, high_z));
                         part = stays < here ? first : stays;
                         for (int k = 0; k < lanes; ++k) {
                             leaving[leaving_count] = p + k;
@@ -176,16 +169,13 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                         }
                     }
                     sums.add(d_x, d_z, part * D_x, part * D_z, part * way * u.y * per_step);
-                    x = stays > 0.0 ? to_x : x;
-                    z = stays > 0.0 ? to_z : z;
-                    store_simd(x, &particles.x_p[p], count);
-                    store_simd(z, &particles.z_p[p], count);
+                    store_simd(stays > 0.0 ? to_x : x, &particles.x_p[p], count);
+                    store_simd(stays > 0.0 ? to_z : z, &particles.z_p[p], count);
                     store_simd(u.x, &particles.ux_p[p], count);
                     store_simd(u.y, &particles.uy_p[p], count);
                     store_simd(u.z, &particles.uz_p[p], count);
                 }
-                tile.add(column, row, sums,
-                         [](const ParticleVector& sum) { return simd_sum(sum); });
+                tile.add(column, row, sums);
 
                 // Cut the trajectories of the others where they cross from cell to cell, take them
                 // out, and let the last of the cell step in.
