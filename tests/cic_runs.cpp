@@ -581,6 +581,77 @@ TEST_CASE("a mesh that brakes or heats a plasma in which nothing happens is a re
     CHECK(verdict("energy_change") == "PASS");
 }
 
+TEST_CASE("a slow drift and a cold wave that the energy-conserving mesh takes are results" *
+          doctest::description("physics")) {
+    // Three quarters of a drift of 0.03 v_th are lost, little of the thermal momentum.
+    const std::string slow = case_file(
+        "[grid]\nlength_x = 192\ncells_x = 64\n[time]\ndt = 0.2\nend = 1000\nenergy_limit = 0\n"
+        "[species.e]\ntemperature_x = 1\nparticles_per_cell = 64\ndrift_x = 0.03\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n");
+    says(said(slow, "method.scheme=energy"), "FAIL momentum_change");
+    CHECK(!facts::run_into("slow", "cic", slow).summary["results"].contains("momentum_change"));
+    const std::string wave = case_file(
+        "[grid]\nlength_x = 6.283185307179586\ncells_x = 64\n[time]\ndt = 0.1\nend = 300\n"
+        "[method]\nscheme = \"energy\"\n[species.e]\nparticles_per_cell = 512\namplitude = 0.01\n"
+        "loading = \"lattice\"\n[species.ions]\ncharge = 1\nmotion = \"fixed\"\n"
+        "[theory]\ncompare = \"wave\"\n");
+    const std::string dies = said(wave, "");
+    says(dies, "FAIL damping = 0.006");
+    says(dies, "lower the amplitude, or give it a temperature");
+    for (const char* cure : {"amplitude=1e-3", "temperature_x=0.001 species.e.loading=quiet"})
+        CHECK(said(wave, "species.e." + std::string(cure)).find("FAIL") == std::string::npos);
+}
+
+TEST_CASE("energy is judged between walls at a potential, with what the battery gives" *
+          doctest::description("physics")) {
+    const std::string walls = case_file(
+        "[grid]\nlength_x = 64\ncells_x = 64\nboundary_x = \"wall\"\n"
+        "[boundary]\nparticles_x_low = \"reflect\"\nparticles_x_high = \"reflect\"\n"
+        "potential_x_high = 10\n[method]\nscheme = \"energy\"\n[time]\ndt = 0.02\nend = 20\n"
+        "[species.e]\ntemperature_x = 1\nparticles_per_cell = 500\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n");
+    const Run swings = facts::run_into("swings", "cic", walls);
+    const auto energy = swings.column("energy");
+    CHECK(std::ranges::max(energy) > 2 * energy.front());
+    CHECK(swings.value("energy_change") < 0.005);
+    const std::string heats =
+        said(walls,
+             "boundary.potential_x_high=1e-3 method.scheme=momentum time.end=3000 "
+             "time.dt=0.2 species.e.particles_per_cell=4");
+    says(heats, "FAIL energy_change");
+}
+
+TEST_CASE("a mode that is not there loosens no bound and a mirror image changes no verdict" *
+          doctest::description("physics")) {
+    const std::string rest = case_file(
+        "[grid]\nlength_x = 64\ncells_x = 64\n[time]\ndt = 0.2\nend = 300\n[species.e]\n"
+        "temperature_x = 1\nparticles_per_cell = 4\nmode_x = 31\namplitude = 0.001\n"
+        "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n[theory]\nmode_x = 31\n");
+    const Run r = facts::run_into("bound", "cic", rest);
+    CHECK(double(r.summary["results"]["energy_change"]["at_most"]) == 0.05);
+    for (const char* drift : {"5", "-5"}) {
+        const Run moves = facts::run_into(
+            "moves", "cic",
+            "cic/cases/landau.toml species.electrons.drift_x=" + std::string(drift));
+        check_results(moves, 3);
+    }
+}
+
+TEST_CASE("modes that grow beside the one that is followed are named" *
+          doctest::description("physics")) {
+    // v0 k = 1.2 is above the cut-off, 0.4 and 0.8 are below.
+    const std::string stream =
+                          "density = 0.5\ntemperature_x = 0.01\nparticles_per_cell = 500\n"
+                          "mode_x = 3\namplitude = 0.01\n",
+                      box = case_file(
+                          "[grid]\nlength_x = 15.707963267948966\ncells_x = 128\n"
+                          "[time]\nend = 80\n[species.right]\ndrift_x = 1\n" +
+                          stream + "[species.left]\ndrift_x = -1\n" + stream +
+                          "[species.ions]\ncharge = 1\nmotion = \"fixed\"\n"
+                          "[theory]\ncompare = \"wave\"\nmode_x = 3\n");
+    says(said(box, ""), "NOT MEASURED largest_over_start: mode (2, 0) of this box grows with 0.3");
+}
+
 TEST_CASE("what falls short names what cures it" * doctest::description("physics")) {
     says(said("cic/cases/plasma_wave.toml",
               "theory.model=plasma theory.frequency_tolerance=0.005 grid.cells_x=64 time.dt=0.02"),

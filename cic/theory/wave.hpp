@@ -285,6 +285,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         ", growth = ", theory.hidden.imag(),
                         ", decays hardly faster, and the record has both: take another mode, or a "
                         "perturbation that has less of it");
+    const bool cold = std::ranges::none_of(parameters.species, [&](const SpeciesCase& s) {
+        return s.mobile() && s.temperatures(parameters.axis())[0] > 0;
+    });
+    if (conserving && cold && theory.omega.imag() <= 0)
+        return "on the energy-conserving mesh a cold wave whose particles go from cell to cell "
+               "feeds others: lower the amplitude, or give it a temperature with a Debye length of "
+               "a "
+               "third of a cell and loading = \"quiet\"";
     if (noise > 0)
         return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
                "loading = \"quiet\"";
@@ -326,13 +334,8 @@ inline std::string other_wave(const Case& parameters, const Theory& theory,
 }
 
 /// What a wave that theory does not damp loses: at most 2e-3 of omega, per time.
-inline void judge_undamped(const Case& parameters, const common::MeasuredMode& seen, double growth,
+inline void judge_undamped(const common::MeasuredMode& seen, double growth,
                            const std::string& where, Summary& summary) {
-    if (parameters.scheme().energy_conserving)
-        summary.hint(
-            "on the energy-conserving mesh a cold wave whose particles go from cell to cell feeds "
-            "others: lower the amplitude, raise grid.cells_x, or take method.scheme = "
-            "\"momentum\"");
     summary.result("damping", {-seen.growth(), seen.growth_error()}, omega_p_unit, 0 - growth,
                    2e-3 * seen.frequency(), where);
 }
@@ -452,6 +455,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                                                    ": raise the amplitude or particles_per_cell"));
         else if (early > level)
             summary.not_measured("onset", too_high);
+        else if (const std::string faster = faster_mode(parameters, theory);
+                 std::fabs(reached - onset) > allowed && !faster.empty())
+            summary.not_measured("onset", faster);
         else
             summary.result("onset", reached, "1/omega_p", onset, allowed, onset_meaning);
         return;
@@ -482,6 +488,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                   "record begins with zero: perturb one species alone");
     else if (covered)
         summary.not_measured("largest_over_start", covers);
+    else if (const std::string faster = faster_mode(parameters, theory);
+             largest > allowed && !faster.empty())
+        summary.not_measured("largest_over_start", faster);
     else if (largest > allowed && largest < allowed + 3 * part)
         summary.not_measured(
             "largest_over_start",
@@ -505,7 +514,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
     else if (seen.found)
-        judge_undamped(parameters, seen, growth, where, summary);
+        judge_undamped(seen, growth, where, summary);
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.
