@@ -144,7 +144,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                                  per_c2);
                     const Vector way = step * inverse_gamma(u, per_c2);  // dt / gamma
                     const Vector to_x = x + way * u.x, to_z = z + way * u.z;
-                    // As they have moved, rounded: then rho follows J to the last digit.
+                    // As they have moved: rounded, so that J is that of rho.
                     const Vector D_x = (to_x - x) * cells_per_x, D_z = (to_z - z) * cells_per_z;
                     const Vector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
                                  j = Stencil<l>::from_border(grid.z, per_dz, to_z);
