@@ -224,6 +224,36 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
            (r.hydrostatic ? "hydrostatic = true" : "flow = \"" + r.flow + "\""));
 }
 
+/// Refuses fluid that cannot rest: the integral of its weight depends on the way to a place.
+inline void refuse_unbalanced(const Case& parameters, const RegionCase& r) {
+    if (!r.hydrostatic) return;
+    const std::string rests = sentence("region.", r.name, ".hydrostatic = true ");
+    refuse(!r.gas.pressure.is_number(), rests,
+           "makes the pressure of that at its center, and region.", r.name,
+           ".pressure is a formula: give a number, or take out hydrostatic");
+    for (const bool x : {true, false})
+        refuse((x ? parameters.grid.x : parameters.grid.z).periodic &&
+                   (x ? parameters.gravity_x : parameters.gravity_z) != 0,
+               rests, "needs walls that hold the fluid, and along ", (x ? "x" : "z"),
+               ", a periodic direction, gravity lets it fall for ever: set both ends to \"slip\"");
+    double most = 0, apart = 0;
+    constexpr long places = 16;
+    for (long n = 0; n < places * places; ++n) {
+        const common::Axis &ax = parameters.grid.x, &az = parameters.grid.z;
+        const double x = ax.at((double(n % places) + 0.5) / places * double(ax.cells)),
+                     z = az.at((double(n / places) + 0.5) / places * double(az.cells));
+        if (!detail::contains(parameters, r, x, z)) continue;
+        const double p = detail::weight_above(parameters, r, x, z);
+        most = std::max(most, std::fabs(p));
+        apart = std::max(apart, std::fabs(p - detail::weight_above(parameters, r, x, z, false)));
+    }
+    refuse(apart > 1e-3 * most, rests,
+           "needs fluid that can rest, and by two ways from its center its "
+           "pressures differ by ",
+           apart, ": take out hydrostatic, or what changes its density",
+           (r.turns() ? " or rotation" : ""), " across its weight");
+}
+
 /// Refuses densities of 0 and pressures that the equation of state does not have, at the places of
 /// the particles: the lowest of them.
 inline void refuse_tension(const Case& parameters) {

@@ -137,27 +137,61 @@ inline double swirl_of(const RegionCase& r, double x, double z, double distance)
     return r.gas.velocity_theta.at(x, z, distance) + r.gas.angular_velocity * x;
 }
 
-// The integral of the centrifugal force per mass, v_theta^2/x, from the center of the region to x, by
-// Gauss's rule of five points in each of 8, 16, ... 128 parts, until it changes by 1e-6 or less.
-inline double centrifugal_potential(const RegionCase& r, double x, double z) {
+// The integral of f from a to b, by Gauss's rule of five points in each of 8, 16, ... 128 parts, until it
+// changes by 1e-6 or less.
+template <class Function>
+double integral(double a, double b, const Function& f) {
     constexpr double at[] = {0, 0.5384693101056831, 0.9061798459386640};
     constexpr double weight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    const double dz = z - r.center_z;
     double before = 0;
     for (int parts = 8;; parts *= 2) {
-        const double part = (x - r.center_x) / parts;
+        const double part = (b - a) / parts;
         double sum = 0;
         for (int n = 0; n < parts; ++n)
             for (const int k : {-2, -1, 0, 1, 2}) {
                 const std::size_t m = std::size_t(std::abs(k));
-                const double here = r.center_x + part * (n + 0.5 + (k < 0 ? -0.5 : 0.5) * at[m]),
-                             v = swirl_of(r, here, z, std::hypot(here - r.center_x, dz));
-                sum += 0.5 * part * weight[m] * v * v / here;
+                sum +=
+                    0.5 * part * weight[m] * f(a + part * (n + 0.5 + (k < 0 ? -0.5 : 0.5) * at[m]));
             }
         if (parts == 128 || (parts > 8 && std::fabs(sum - before) <= 1e-6 * std::fabs(sum)))
             return sum;
         before = sum;
     }
+}
+
+// The pressure at (x, z) above that of the center of a region: the integral of density times gravity
+// and centrifugal force, along z and then along x, or the other way round, which is the same
+// where the fluid can rest.
+inline double weight_above(const Case& parameters, const RegionCase& r, double x, double z,
+                           bool along_z_first = true) {
+    const double x_0 = r.center_x, z_0 = r.center_z, g_x = parameters.gravity_x,
+                 g_z = parameters.gravity_z;
+    const auto distance = [&](double at_x, double at_z) {
+        return std::hypot(at_x - x_0, at_z - z_0);
+    };
+    const auto outward = [&](double at_x, double at_z) {
+        const double v = swirl_of(r, at_x, at_z, distance(at_x, at_z));
+        return v * v / at_x;
+    };
+    const auto along_x = [&](double at_z, const auto& f) {
+        return integral(x_0, x, [&](double at_x) { return f(at_x, at_z); });
+    };
+    if (r.gas.density.is_number() && along_z_first) {
+        const double rho = r.gas.density, falls = rho * (g_x * (x - x_0) + g_z * (z - z_0));
+        return r.turns() ? falls + rho * along_x(z, outward) : falls;
+    }
+    const auto rho = [&](double at_x, double at_z) {
+        return r.gas.density.at(at_x, at_z, distance(at_x, at_z));
+    };
+    double sum = 0;
+    if (g_z != 0)
+        sum +=
+            integral(z_0, z, [&](double at_z) { return g_z * rho(along_z_first ? x_0 : x, at_z); });
+    if (g_x != 0 || r.turns())
+        sum += along_x(along_z_first ? z : z_0, [&](double at_x, double at_z) {
+            return rho(at_x, at_z) * (r.turns() ? g_x + outward(at_x, at_z) : g_x);
+        });
+    return sum;
 }
 
 }  // namespace detail
@@ -178,8 +212,7 @@ inline FluidState fluid_of(const Case& parameters, const RegionCase& r, double x
     const auto at = [&](const common::Formula& f) { return f.at(x, z, distance); };
     double rho = at(r.gas.density), p = at(r.gas.pressure), heat = 1;
     double vx = at(r.gas.velocity_x), vz = at(r.gas.velocity_z);
-    if (r.hydrostatic) p += rho * (parameters.gravity_x * dx + parameters.gravity_z * dz);
-    if (r.hydrostatic && r.turns()) p += rho * detail::centrifugal_potential(r, x, z);
+    if (r.hydrostatic) p += detail::weight_above(parameters, r, x, z);
     if (r.flow == "rotation") {
         vx -= r.speed * dz / r.width;
         vz += r.speed * dx / r.width;
