@@ -45,6 +45,7 @@ inline long column_of(const Grid& grid, long n) { return n % grid.stride() - 1; 
 /// The sides of the mesh.
 enum Side : std::size_t { x_low, x_high, z_low, z_high };
 inline constexpr std::array<Side, 4> all_sides{x_low, x_high, z_low, z_high};
+inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 inline bool is_x_side(Side side) { return side == x_low || side == x_high; }
 inline bool is_low_side(Side side) { return side == x_low || side == z_low; }
 

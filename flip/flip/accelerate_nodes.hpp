@@ -128,6 +128,56 @@ inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g
     return 0.25 * grid.cell_area() * sum;
 }
 
+/// Lets the pressure outside of open boundaries into the voids that reach to them, so that it acts on the
+/// surface of fluid that has left its end.
+/// in:     cells.M, surface
+/// out:    cells.outside
+inline void fill_voids(const Grid& grid, const Boundaries& boundaries, Cells& c) {
+    const auto pushes = [&](Side side) {
+        return boundaries.is(side, BoundaryKind::open) && boundaries.side[side].pressure != 0;
+    };
+    if (std::ranges::none_of(all_sides, pushes)) return;
+    c.outside.setZero(grid.size());
+    std::vector<std::pair<long, double>> found;
+    const auto enter = [&](long i, long j, double pressure) {
+        const auto wrapped = [](const common::Axis& axis, long k) {
+            return axis.periodic ? (k + axis.cells) % axis.cells : k;
+        };
+        i = wrapped(grid.x, i), j = wrapped(grid.z, j);
+        if (i < 0 || j < 0 || i >= grid.x.cells || j >= grid.z.cells) return;
+        const long n = grid.index(i, j);
+        if (c.outside[n] != 0 || (c.M[n] > 0 && c.surface[n] == 0)) return;
+        c.outside[n] = pressure;
+        found.emplace_back(n, pressure);
+    };
+    for (const Side side : all_sides) {
+        if (!pushes(side)) continue;
+        const long last = is_low_side(side) ? 0 : (is_x_side(side) ? grid.x : grid.z).cells - 1;
+        for (long k = 0; k < (is_x_side(side) ? grid.z : grid.x).cells; ++k)
+            enter(is_x_side(side) ? last : k, is_x_side(side) ? k : last,
+                  boundaries.side[side].pressure);
+    }
+    while (!found.empty()) {
+        const auto [n, pressure] = found.back();
+        found.pop_back();
+        const long i = column_of(grid, n), j = n / grid.stride() - 1;
+        enter(i - 1, j, pressure), enter(i + 1, j, pressure);
+        enter(i, j - 1, pressure), enter(i, j + 1, pressure);
+    }
+    fill_pressure(grid, c.outside);
+}
+
+/// Force of the pressure outside of open boundaries on a node: through them, and across the voids beside
+/// them.
+inline Eigen::Vector2d outside_force(const Grid& grid, const Boundaries& boundaries, const Cells& c,
+                                     long i, long j, long n) {
+    Eigen::Vector2d F =
+        c.outside.size() > 0 ? pressure_force(grid, c.outside, n) : Eigen::Vector2d(0, 0);
+    if (i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells)
+        F += boundary_force(grid, boundaries, i, j);
+    return F;
+}
+
 /// The forces that are known before the step: q, the viscosity of the fluid, and the pressure
 /// outside of open boundaries.
 /// out:    nodes.fx, fz
@@ -138,10 +188,9 @@ inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, do
     for_each_node(grid, [=](long, long, long n) { fx[n] = fz[n] = 0; });
     add_viscous_force(grid, viscosity, mesh);
     fill_pressure(grid, mesh.cells.q);
-    for_each_node(grid, [=, &boundaries, &q = mesh.cells.q](long i, long j, long n) {
-        Eigen::Vector2d F = stress_force(grid, q, n);
-        if (i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells)
-            F += boundary_force(grid, boundaries, i, j);
+    for_each_node(grid, [=, &boundaries, &c = mesh.cells](long i, long j, long n) {
+        const Eigen::Vector2d F =
+            stress_force(grid, c.q, n) + outside_force(grid, boundaries, c, i, j, n);
         fx[n] += F[0];
         fz[n] += F[1];
     });

@@ -17,12 +17,14 @@ namespace flip {
 /// Adds to the budget what comes from outside within the step: gravity, the pressure outside of open
 /// boundaries, and what walls give to the nodes that they hold, R = m (v^L - v) - dt (F + m g).
 ///   momentum: the impulses;  energy: impulse . v_bar, of walls impulse . velocity of the wall
-inline void add_external_work(const Problem& problem, double dt, const Nodes& g, Budget& budget) {
+inline void add_external_work(const Problem& problem, double dt, const Mesh& mesh, Budget& budget) {
     const Grid& grid = problem.grid;
+    const Nodes& g = mesh.nodes;
     const BodyForce& force = problem.body_force;
     const long nx = grid.x.cells - (grid.x.periodic ? 1 : 0),
                nz = grid.z.cells - (grid.z.periodic ? 1 : 0);
-    const bool falls = force.gravity_x != 0 || force.gravity_z != 0 || force.trap != 0;
+    const bool inside = force.gravity_x != 0 || force.gravity_z != 0 || force.trap != 0 ||
+                        mesh.cells.outside.size() > 0;
     std::vector<Budget> of_row(nz + 1);
     const auto add_row = [&](long j) {
         Budget& sum = of_row[j];
@@ -32,12 +34,11 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
             sum.energy += impulse_x * vx + impulse_z * vz;
         };
         for (long i = 0; i <= nx; ++i) {
-            const bool edge = i == 0 || j == 0 || i == grid.x.cells || j == grid.z.cells;
-            if (!falls && !edge) continue;
+            if (!inside && i > 0 && j > 0 && i < grid.x.cells && j < grid.z.cells) continue;
             const long n = grid.index(i, j);
             const Eigen::Vector2d weight = dt * g.m[n] * node_acceleration(grid, force, i, j);
             add(weight[0], weight[1], g.vx_bar[n], g.vz_bar[n]);
-            if (!edge || g.m[n] <= 0) continue;
+            if (g.m[n] <= 0) continue;
             const Held held = held_at(grid, problem.boundaries, i, j);
             const bool lumped = g.reaction_x.size() == 0;
             if (held.x)
@@ -49,7 +50,8 @@ inline void add_external_work(const Problem& problem, double dt, const Nodes& g,
                     lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - weight[1]
                            : g.reaction_z[n],
                     0, held.vz);
-            const Eigen::Vector2d push = dt * boundary_force(grid, problem.boundaries, i, j);
+            const Eigen::Vector2d push =
+                dt * outside_force(grid, problem.boundaries, mesh.cells, i, j, n);
             add(push[0], push[1], g.vx_bar[n], g.vz_bar[n]);
         }
     };
@@ -120,7 +122,7 @@ inline void work_on_cells(const Problem& problem, double dt, Mesh& mesh, Budget&
         increment[n][2] = filled ? move_x[n] : 0;
         increment[n][3] = filled ? move_z[n] : 0;
     });
-    add_external_work(problem, dt, g, budget);
+    add_external_work(problem, dt, mesh, budget);
 
     const bool volumes = c.volume.size() > 0;
     const long count = mesh.materials;
@@ -222,6 +224,7 @@ inline StepReport move_mesh(const Problem& problem, double& dt, const Particles&
 
     find_viscosity(grid, boundaries, problem.q, mesh);
     limit_viscosity(grid, dt, mesh);
+    fill_voids(grid, boundaries, mesh.cells);
     if (consistent) stop_at_walls(problem, M, g);
     for (;; dt *= 0.5) {
         find_known_forces(grid, boundaries, problem.viscosity, mesh);

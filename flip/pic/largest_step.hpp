@@ -40,6 +40,7 @@ struct CellAcceleration {
 ///   c^2 = 1/(rho compressibility);  of a cell with a free surface, that of the material in it
 /// in:     masses of the cells and what the state knows of them
 /// out:    mass, per_mass, rho, filled, p, c, share, v, with ghosts
+/// errors: NumericalError where fluid has left an end whose pressure outside would push it
 inline void find_pressure(const Problem& problem, const State& state, PicCells& cells) {
     const Grid& grid = problem.grid;
     const std::vector<Material>& materials = problem.materials;
@@ -83,6 +84,18 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
         }
     });
     fill_ghosts(grid, problem.boundaries, cells);
+    for (const Side side : all_sides) {
+        const Boundary& end = problem.boundaries.side[side];
+        if (end.kind != BoundaryKind::open || end.pressure == 0) continue;
+        for_each_ghost(grid, side, [&](long, long inside) {
+            if (cells.filled[inside] == 0)
+                common::fail("the fluid has left ", side_names[side], " ",
+                             cell_and_time(grid, inside, state.time),
+                             ", and the pressure outside, ", end.pressure,
+                             ", does not reach it across a void: take flip, where it does, or "
+                             "lower time.end");
+        });
+    }
 }
 
 namespace detail {

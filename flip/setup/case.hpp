@@ -78,7 +78,6 @@ struct BoundaryCase {
     double pressure = 0;            // outside an open end
     GasCase inflow = {};            // made by completed()
 };
-inline constexpr std::array<const char*, 4> side_names{"x_low", "x_high", "z_low", "z_high"};
 
 /// A complete input. Any consistent units; per unit length along y, or axisymmetric.
 struct Case {
