@@ -9,6 +9,7 @@
 
 #include "flip/setup/keys_of_flip.hpp"
 #include "flip/setup/scales.hpp"
+#include "flip/theory/compare_instability.hpp"
 #include "flip/theory/compare_rest.hpp"
 #include "flip/theory/compare_sound.hpp"
 
@@ -169,14 +170,26 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          " %, and the comparison expects that: a wavelength has ",
          double(parameters.grid.x.cells) / double(parameters.mode),
          " cells; refine the mesh for sound of the gas");
+    const RegionCase& waves = region_with_flow(parameters, "wave");
+    Case follows = parameters;
+    follows.mode = waves.mode;
+    const bool sound = waves.flow == "wave" && !waves.has_formula() &&
+                       parameters.regions.size() == 1 && parameters.q_linear == 0;
     const double grown =
-        parameters.compare != wave_comparison.name || parameters.q_linear > 0
-            ? 1
-            : std::pow(sound_wave_of(parameters, program, scales.dt).amplification, scales.steps);
+        sound ? std::pow(sound_wave_of(follows, program, scales.dt).amplification, scales.steps)
+              : 1;
     warn(out, grown > 1.01, "explicit steps make sound grow, this wave by a factor ", grown,
-         " until time.end, and the comparison expects that: lower time.cfl, or take flip with "
-         "flip.mass = \"consistent\" and an even number of particles across a cell, whose sound "
-         "does not");
+         " until time.end",
+         parameters.compare == wave_comparison.name ? ", and the comparison expects that" : "",
+         ": lower time.cfl, or take flip with flip.mass = \"consistent\" and an even number of "
+         "particles across a cell, whose sound does not");
+    warn(out,
+         program == "flip" && waves.flow == "wave" && !waves.has_formula() &&
+             drowns_in_noise(parameters, waves),
+         "with ", parameters.per_cell_x,
+         " particles across a cell, an odd number, the wave of region.", waves.name,
+         " stirs the lattice, and drowns in its noise: take an even number, or "
+         "flip.density = \"particles\"");
     if (program == "flip" && !parameters.implicit()) warn_of_slow_flow(parameters, scales, out);
     // Sound is weak, also on gas that moves.
     const bool shocks =
@@ -296,6 +309,14 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     detail::warn_of_regions(parameters, scales, program, warnings);
     detail::warn_of_inflow(parameters, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
+    const double on_mesh = parameters.compare == interface_comparison.name && !parameters.implicit()
+                               ? interface_rate_by_mesh(parameters, program)
+                               : 0;
+    warn(warnings, on_mesh > 0 && std::fabs(on_mesh - 1) > parameters.theory_tolerance,
+         "on this mesh the wave grows at ", on_mesh,
+         " of the rate of the fluids, beyond "
+         "theory.tolerance = ",
+         parameters.theory_tolerance, ": refine the mesh");
     const Comparison& comparison = comparison_of(parameters);
     if (comparison.warn != nullptr) comparison.warn(parameters, warnings);
     const std::vector<std::pair<const char*, double>> intervals{

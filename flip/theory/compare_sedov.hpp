@@ -133,10 +133,14 @@ inline void compare_sedov(const FinishedRun& run) {
     const Blast blast = blast_of(run.parameters);
     const double t = run.state.time, R = blast.radius(t);
     const double dx = run.parameters.grid.x.spacing();
-    run.hint("the energy starts in ", hot_region(run.parameters).radius / dx,
-             " cells, and the shock has come ", R / dx,
-             " cells: refine the mesh or raise time.end until that is 40 and ten times the first; "
-             "keep flip.density = \"cells\" and viscosity.linear = 0.5, viscosity.quadratic = 1");
+    const double hot = hot_region(run.parameters).radius / dx, come = R / dx;
+    const bool near = come < std::max(40.0, 10 * hot), flips = run.program == "flip";
+    run.hint(
+        "the energy starts in ", hot, " cells, and the shock has come ", come, " cells: ",
+        near ? "refine the mesh or raise time.end until that is 40 and ten times the first; keep "
+             : "refine the mesh; keep ",
+        flips ? "flip.density = \"cells\" and " : "",
+        "viscosity.linear = 0.5, viscosity.quadratic = 1");
     run.result("shock_radius", run.history.column("shock_radius").back(), "length",
                blast.radius(run.history.column("time").back()),
                "Sedov's similarity solution; outer half height of the density");
