@@ -193,6 +193,13 @@ flip kelvin_helmholtz.toml flip.viscosity=0.001
     warning: flip.viscosity = 0.001 changes this wave by up to about 1.261 %, and theory is of fluids
     without it
 flip rayleigh_taylor.toml flip.viscosity=1e-6 -> no warning
+flip rayleigh_taylor.toml grid.cells_x=32 grid.cells_z=64 region.upper.density=1.2
+    warning: on this mesh the wave grows at 0.9356 of the rate of the fluids, beyond
+    theory.tolerance = 0.05: refine the mesh
+flip around sound region.gas.mode=4 viscosity.linear=0 time.end=10
+    warning: explicit steps make sound grow, this wave by a factor
+flip around sound viscosity.linear=0 time.end=10 particles.per_cell_x=5 time.cfl=0.01
+    warning: with 5 particles across a cell, an odd number, the wave of region.gas stirs the lattice
 flip around sound theory.compare=wave time.end=1
     warning: viscosity.linear = 0.5 damps the wave, and theory is of sound that nothing damps
 flip tube boundary.x_low=no_slip

@@ -66,16 +66,15 @@ struct Nodes {
 
 /// The cells; columns of grid.size(), those per material with the materials of a cell together.
 struct Cells {
-    std::vector<CellSum> sum;   // [cell][material]
-    std::vector<double> share;  // of a change of volume
-    std::vector<Two> de;        // e of a particle changes by de[0] + e de[1]
-    Field M;                    // mass
-    Field p;                    // pressure
-    std::vector<CellTensor> q;  // artificial viscosity
-    Field compressibility;      // -(dV/dp)/V; 0 in an empty cell
-    Field p_step;               // the pressure that acts in this step
-    std::vector<char> surface;  // 1: partly void, p = 0 whatever happens
-    Field outside;              // of the ends, in the voids beside them; empty where all are 0
+    std::vector<CellSum> sum;         // [cell][material]
+    std::vector<double> share;        // of a change of volume
+    std::vector<Two> de;              // e of a particle changes by de[0] + e de[1]
+    Field M;                          // mass
+    Field p;                          // pressure
+    std::vector<CellTensor> q;        // artificial viscosity
+    Field compressibility;            // -(dV/dp)/V; 0 in an empty cell
+    Field p_step, outside;            // the pressure that acts in this step; in voids at open ends
+    std::vector<char> surface;        // 1: partly void, p = 0 whatever happens
     std::vector<double> V_of_column;  // the volume that the lattice of the start fills in a cell
     // Only where particles carry volumes: sums of V_p and C; V_c div v dt, and its work, per C; room for
     // gas, and what liquid has too much of; per material, pressure above that of the cell.

@@ -50,9 +50,8 @@ inline void add_external_work(const Problem& problem, double dt, const Mesh& mes
                     lumped ? g.m[n] * (g.vzL[n] - g.vz[n]) - dt * g.fz[n] - weight[1]
                            : g.reaction_z[n],
                     0, held.vz);
-            const Eigen::Vector2d push =
-                dt * outside_force(grid, problem.boundaries, mesh.cells, i, j, n);
-            add(push[0], push[1], g.vx_bar[n], g.vz_bar[n]);
+            const Eigen::Vector2d F = outside_force(grid, problem.boundaries, mesh.cells, i, j, n);
+            add(dt * F[0], dt * F[1], g.vx_bar[n], g.vz_bar[n]);
         }
     };
     common::for_each_row(nz + 1, add_row, grid.size());

@@ -73,8 +73,8 @@ inline void describe_region(common::ParameterTable& table, const std::string& pr
                "added to the internal energy, shared by the mass of the region");
     table.flag(
         prefix + ".hydrostatic", r.hydrostatic,
-        "pressure is that at center_x, center_z, and changes with depth by density times gravity, "
-        "and away from the axis by density times the centrifugal force");
+        "pressure is that at center_x, center_z, and changes with depth by the integral of density "
+        "times gravity, and away from the axis by that of density times the centrifugal force");
     table.real(prefix + ".noise", r.noise, "velocity", at_least(0),
                "largest random velocity of a particle along x");
 }
@@ -120,7 +120,7 @@ inline common::ParameterTable describe(Case& parameters) {
         table.real("boundary.slide_" + end, parameters.boundaries[k].slide, "velocity", anything(),
                    "of a no-slip wall along itself");
         table.real("boundary.pressure_" + end, parameters.boundaries[k].pressure, "pressure",
-                   at_least(0), "outside an open end");
+                   at_least(0), "outside an open end, and in a void beside it (not in pic)");
     }
     detail::describe_gas(table, "inflow", parameters.inflow);
     table.list("inflow", parameters.inflows, detail::describe_gas<InflowCase>,
