@@ -610,7 +610,7 @@ fluids rayleigh_taylor.toml gravity.z=1
     density 2 above 1 with gravity.z = 1 does not overturn: turn one around
 fluids box heavy theory.compare=rayleigh_taylor around_x gravity.z=-1 region.heavy.flow=overturn \
     region.heavy.mode=2 -> follows theory.mode = 1, and region.heavy.mode = 2: make them the same
-fluids rayleigh_taylor.toml gravity.x=0.1
+fluids rayleigh_taylor.toml gravity.trap=0.1
     theory.compare = "rayleigh_taylor" is for gravity along z alone: take out gravity.x and
     gravity.trap
 fluids rayleigh_taylor.toml gravity.trap=1 -> is for gravity along z alone
