@@ -219,22 +219,25 @@ tools)
         awk 'NF > 1 && $1 + $2 == 1.5 { ++there } END { exit there < 3 }' || complain "contours over axes without numbers have no places"
 
     # A sweep is the product of its lists, its table has every run, and the second time nothing is run.
-    sweep() { PROGRAM=flip BUILD=$build SWEEP=$folder/sweep sh common/sweep.sh flip/cases/sod.toml "$@" > "$folder/told" 2>&1; }
+    # Paths may have blanks and quotes.
+    place="$folder/it's a sweep" case="$folder/Sod's case.toml"
+    cp flip/cases/sod.toml "$case"
+    sweep() { PROGRAM=flip BUILD=$build SWEEP=$place sh common/sweep.sh "$case" "$@" > "$folder/told" 2>&1; }
     SWEEP_ONLY=2/3 sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
-    [ "$(grep -c . "$folder/sweep/results.dat")" = 3 ] || complain "an element of two runs of six has $(grep -c . "$folder/sweep/results.dat") lines"
+    [ "$(grep -c . "$place/results.dat")" = 3 ] || complain "an element of two runs of six has $(grep -c . "$place/results.dat") lines"
     sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05 || complain "sweep: $(cat "$folder/told")"
-    [ "$(awk 'NR > 1 { print $1, $2 }' "$folder/sweep/results.dat" | sort -u | grep -c .)" = 6 ] || complain "the table does not have six runs"
-    [ "$(awk 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "L1_density") c = i } NR > 1 && $c > 0 && $c < 1' "$folder/sweep/results.dat" | grep -c .)" = 6 ] || complain "the table lacks results"
+    [ "$(awk 'NR > 1 { print $1, $2 }' "$place/results.dat" | sort -u | grep -c .)" = 6 ] || complain "the table does not have six runs"
+    [ "$(awk 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "L1_density") c = i } NR > 1 && $c > 0 && $c < 1' "$place/results.dat" | grep -c .)" = 6 ] || complain "the table lacks results"
     # shellcheck disable=SC2012
-    before=$(ls -l --time-style=full-iso "$folder"/sweep/*/summary.json)
+    before=$(ls -l --time-style=full-iso "$place"/*/summary.json)
     sweep cells_x=20,30 flip.transfer=flip,apic,pic -- time.end=0.05
     # shellcheck disable=SC2012
-    [ "$before" = "$(ls -l --time-style=full-iso "$folder"/sweep/*/summary.json)" ] || complain "a complete sweep was run again"
+    [ "$before" = "$(ls -l --time-style=full-iso "$place"/*/summary.json)" ] || complain "a complete sweep was run again"
     # Another call adds to the table; the figure counts verdicts.
     sweep cells_x=24 flip.transfer=flip -- time.end=0.05 || complain "sweep: $(cat "$folder/told")"
-    [ "$(sed -n '2,$s/^\([0-9]*\) \([a-z]*\) .*/\1\2/p' "$folder/sweep/results.dat" | sort | tr '\n' ' ')" = '20apic 20flip 20pic 24flip 30apic 30flip 30pic ' ] || complain "the table lacks the runs of an earlier call"
-    awk -f common/figures/sweep.awk "$folder/sweep/results.dat" | grep -q "energy.*, 7 of 7 PASS'" || complain "the figure of a sweep shows no verdicts"
-    rm -f out/figures/sweep_sweep.png
+    [ "$(sed -n '2,$s/^\([0-9]*\) \([a-z]*\) .*/\1\2/p' "$place/results.dat" | sort | tr '\n' ' ')" = '20apic 20flip 20pic 24flip 30apic 30flip 30pic ' ] || complain "the table lacks the runs of an earlier call"
+    awk -f common/figures/sweep.awk "$place/results.dat" | grep -q "energy.*, 7 of 7 PASS'" || complain "the figure of a sweep shows no verdicts"
+    rm -f "out/figures/sweep_it's a sweep.png"
     sweep cells_x=20,0 && complain "a run that failed was not told"
     # What cannot be swept is refused with its name.
     refuses() { sweep "$1"; [ $? = 2 ] && [ "$(cat "$folder/told")" = "$2" ] || complain "sweep $1: $(cat "$folder/told")"; }
