@@ -602,7 +602,7 @@ TEST_CASE("a slow drift and a cold wave that the energy-conserving mesh takes ar
         CHECK(said(wave, "species.e." + std::string(cure)).find("FAIL") == std::string::npos);
 }
 
-TEST_CASE("energy is judged between walls at a potential, with what the battery gives" *
+TEST_CASE("energy is judged between walls at a potential less what the battery gives" *
           doctest::description("physics")) {
     const std::string walls = case_file(
         "[grid]\nlength_x = 64\ncells_x = 64\nboundary_x = \"wall\"\n"
