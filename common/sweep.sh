@@ -35,10 +35,11 @@ full_name() {  # of a key without its section
     echo "$full"
 }
 
+word() { printf "'%s'" "$(printf %s "$1" | sed "s/'/'\\\\''/g")"; }
 lists="" fixed=""
 while [ $# -gt 0 ]; do
     case $1 in
-    --) shift; fixed=$*; break ;;
+    --) shift; for one; do fixed="$fixed $(word "$one")"; done; break ;;
     *= | *=,* | *,,* | *,) fail "'$1' lacks a value: KEY=VALUE,VALUE" ;;
     *=*) lists="$lists $(full_name "${1%%=*}")=${1#*=}" ;;
     *) fail "'$1' is not KEY=VALUE,VALUE" ;;
@@ -57,7 +58,7 @@ combinations=$(echo $lists | awk -v pattern="${SWEEP_NAME:-}" '
             now[k] = value[i]
             part = key
             sub(/.*\./, "", part)
-            combine(k + 1, name "_" part "=" value[i], keys " " key "=" value[i])
+            combine(k + 1, name "_" part "=" value[i], keys " \047" key "=" value[i] "\047")
         }
     }
     function filled(    text, k) {
@@ -70,9 +71,8 @@ combinations=$(echo $lists | awk -v pattern="${SWEEP_NAME:-}" '
 # One line of the shell for each run.
 only=${SWEEP_ONLY:-1/1}
 commands=$folder/commands${SWEEP_ONLY:+.${only%/*}}
-word() { printf "'%s'" "$(printf %s "$1" | sed "s/'/'\\\\''/g")"; }
 echo "$combinations" | start="$(word "$program") $(word "$case") --threads 1 --resume --quiet --out $(word "$folder/")" \
-    awk -v fixed="$fixed" -v k="${only%/*}" -v n="${only#*/}" '(NR - k) % n == 0 { name = $1; $1 = ""; print ENVIRON["start"] name $0 " " fixed }' > "$commands"
+    fixed=$fixed awk -v k="${only%/*}" -v n="${only#*/}" '(NR - k) % n == 0 { name = $1; $1 = ""; print ENVIRON["start"] "\047" name "\047" $0 ENVIRON["fixed"] }' > "$commands"
 
 status=0 log=
 if command -v parallel >/dev/null; then

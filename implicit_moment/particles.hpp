@@ -34,7 +34,7 @@ struct Particles {
     std::array<std::vector<ParticleReal>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }
 };
 
-/// The velocity, or u, of one particle (Real = double) or of several (SimdVector).
+/// The velocity, or u, of one particle (Real = double) or of several (a vector).
 template <class Real>
 struct Velocity {
     Real x, y, z;

@@ -403,15 +403,12 @@ fluids box rings region.gas.velocity_theta=.1/x region.gas.hydrostatic=true
     region.gas.velocity_theta is
 fluids box rings region.gas.velocity_theta=r region.gas.hydrostatic=true
     in formulas x is the distance from the axis, r that from the center of the region
-fluids sod time.energy_limit=0.5
-    time.energy_limit = 0.5 is what a run begins with: raise it above 1, or set 0 for none
 fluids box gravity.z=-1 region.gas.hydrostatic=true region.gas.pressure=9 region.gas.density=1+x
-    needs fluid that can rest, and by two ways from its center its pressures differ by 0.9385: take
-    out hydrostatic, or what changes its density across its weight
+    from way to way: take out hydrostatic, or let its density change along gravity alone
 fluids box rings region.gas.angular_velocity=1 region.gas.density=1+z region.gas.hydrostatic=true
-    take out hydrostatic, or what changes its density or rotation across its weight
+    take out hydrostatic, or let neither its density nor its rotation change along the axis
 fluids box gravity.z=-1 region.gas.hydrostatic=true region.gas.pressure=9-z
-    region.gas.pressure is a formula: give a number, or take out hydrostatic
+    itself: give a number, or take out hydrostatic
 fluids around gravity.x=-1 region.gas.hydrostatic=true region.gas.pressure=9
     needs walls that hold the fluid, and along x, a periodic direction, gravity lets it fall
 fluids box rings region.gas.angular_velocity=1 theory.compare=inertial_wave theory.mode=20

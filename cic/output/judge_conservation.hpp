@@ -13,8 +13,8 @@ namespace cic {
 
 /// The largest change of the momentum, of sum (2 K M)^1/2 of all species, K kinetic energy, M mass, at the
 /// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged
-/// only where it did not; the energy scheme where a species drifts, and where all drift as a whole, of their
-/// momentum, but for that of the noise of as many particles. Of a magnetized plasma the momentum along B.
+/// only where it did not; the energy scheme where a species drifts, and where drifts do not cancel, of the
+/// momentum that they have together, but for that of the noise of as many particles. Of a magnetized plasma the momentum along B.
 /// in:     least_energy, below which all energy is round-off
 inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
                            Summary& summary) {
@@ -48,15 +48,20 @@ inline void judge_momentum(const Case& parameters, double least_energy, const Hi
     const bool energy = parameters.scheme().energy_conserving;
     // What does not drift has nothing to lose.
     if (energy && !(drifting > 0.01 * most)) return;
-    const bool as_a_whole = energy && carried > 0.01 * most;
-    change /= as_a_whole ? carried : thermal;
+    const bool together = energy && carried > 0.01 * most;
+    const double noise = std::sqrt(noise2) / carried;
+    if (together && noise > 0.5)
+        return summary.not_measured("momentum_change",
+                                    sentence("the noise of so many particles has ", noise,
+                                             " of the momentum that they have together: raise "
+                                             "particles_per_cell or the drift"));
+    change /= together ? carried : thermal;
     if (!(std::ranges::max(kinetic) > least_energy) || (!energy && change <= 0.05)) return;
     summary.hint(energy ? "the energy-conserving mesh brakes what moves through it: take "
                           "method.scheme = \"momentum\", or refine the mesh to the Debye length"
                         : "the forces of this scheme are equal and opposite to round-off: compile "
                           "with REAL=double");
-    summary.result_at_most("momentum_change", change, "",
-                           as_a_whole ? 0.05 + std::sqrt(noise2) / carried : 0.05,
+    summary.result_at_most("momentum_change", change, "", together ? 0.05 + noise : 0.05,
                            "momentum is conserved, but for the energy-conserving mesh");
 }
 

@@ -119,7 +119,11 @@ class Recorder {
             change = std::max(change, std::fabs(one - energy.front()));
             largest = std::max(largest, std::fabs(one));
         }
-        const double scale = energy.front() > 1e-3 * largest ? energy.front() : largest;
+        // The field of a bias is no energy of the plasma.
+        const bool biased = std::ranges::any_of(
+            parameters_.walls, [](const WallCase& wall) { return wall.potential != 0; });
+        const double own = biased ? history.first("kinetic") : energy.front();
+        const double scale = own > 1e-3 * largest ? own : largest;
         const bool conserving = parameters_.scheme().energy_conserving;
         summary.hint(
             sentence("the mesh heats what it does not resolve, few particles are noise, and the "

@@ -211,28 +211,34 @@ inline double change_by_leapfrog(const Case& parameters, const Theory& theory) {
     return std::max(omega2 * dt2 / 24, gyration * gyration * dt2 / 12);
 }
 
-/// Where another mode of the box along x grows by exp(5) or more until the end: that, and what to change; else
-/// nothing. When it saturates it drives all modes.
-inline std::string faster_mode(const Case& parameters, const Theory& theory) try {
-    if (parameters.magnetized() || parameters.has_distributions() ||
-        wave_vector(parameters, theory.mode_x, theory.mode_z).x == 0)
-        return "";
+/// Where another mode along x, or along z as the followed one, grows from its seed or from noise to the field
+/// in which it traps particles: that, and what to change; else nothing. When it saturates it drives all modes.
+inline std::string faster_mode(const Case& parameters, const Theory& theory) {
+    if (parameters.magnetized() || parameters.has_distributions()) return "";
+    const bool along_z = theory.mode_x == 0;
+    const long cells = (along_z ? parameters.grid.z : parameters.grid.x).cells;
     Theory fastest;
     fastest.omega = {0, std::max(theory.omega.imag(), 5 / parameters.end)};
     Case any = parameters;
     any.near = 0, any.model = "plasma";
-    for (long m = 1; m <= 32 && 2 * m < parameters.grid.x.cells; ++m) {
-        if (m == std::labs(theory.mode_x)) continue;
-        const Theory other = theory_of_wave(any, m, 0, fastest.omega.imag());
-        if (other.mode_x != 0 && other.omega.imag() > fastest.omega.imag()) fastest = other;
-    }
-    if (fastest.mode_x == 0) return "";
-    return sentence(mode_text(fastest.mode_x, 0), " of this box grows with ", fastest.omega.imag(),
-                    theory.omega.imag() > 0 ? ", faster, " : ", ",
+    for (long m = 1; m <= 32 && 2 * m < cells; ++m) try {
+            if (m == std::labs(along_z ? theory.mode_z : theory.mode_x) &&
+                (along_z || theory.mode_z == 0))
+                continue;
+            const Theory other =
+                theory_of_wave(any, along_z ? 0 : m, along_z ? m : 0, fastest.omega.imag());
+            const double growth = other.omega.imag();
+            if (!(growth > fastest.omega.imag())) continue;
+            const double seed = std::max(other.seed, noise_field(parameters, other));
+            if (seed * std::exp(growth * parameters.end) > onset_field(parameters, other))
+                fastest = other;
+        } catch (const common::InputError&) {  // none was found
+        }
+    if (fastest.mode_x == 0 && fastest.mode_z == 0) return "";
+    return sentence(mode_text(fastest.mode_x, fastest.mode_z), " of this box grows with ",
+                    fastest.omega.imag(), theory.omega.imag() > 0 ? ", faster, " : ", ",
                     "and drives all others when it saturates: shorten the box to one wavelength of "
                     "the mode that is followed, or the run");
-} catch (const common::InputError&) {  // none was found
-    return "";
 }
 
 /// What a wave that is not as in theory is most likely due to, and what to change.
@@ -286,13 +292,12 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         ", decays hardly faster, and the record has both: take another mode, or a "
                         "perturbation that has less of it");
     const bool cold = std::ranges::none_of(parameters.species, [&](const SpeciesCase& s) {
-        return s.mobile() && s.temperatures(parameters.axis())[0] > 0;
+        return s.mobile() && s.temperatures(parameters.axis())[theory.mode_x != 0 ? 0 : 2] > 0;
     });
     if (conserving && cold && theory.omega.imag() <= 0)
         return "on the energy-conserving mesh a cold wave whose particles go from cell to cell "
-               "feeds others: lower the amplitude, or give it a temperature with a Debye length of "
-               "a "
-               "third of a cell and loading = \"quiet\"";
+               "feeds others: lower the amplitude, or give it a temperature with a Debye length "
+               "of a third of a cell and loading = \"quiet\"";
     if (noise > 0)
         return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
                "loading = \"quiet\"";
@@ -399,18 +404,19 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                  ", and only ", theory.seed, " of it is the growing wave: lower the amplitude ",
                  early / level, " times or more");
     // What begins above the onset has saturated before it can be measured.
+    const double begins = std::max(noise, amplitude.front());
     const std::string saturated =
-        !grows || !(early > level) ||
+        !grows || !(begins > level) ||
                 std::fabs(seen.growth() - growth) <=
                     seen.growth_error() + parameters.growth_tolerance * growth
             ? ""
         : noise < level && theory.seed > 0
             ? too_high
-            : sentence("noise begins with ", early, ", above the field of the onset, ", level,
+            : sentence("noise begins with ", begins, ", above the field of the onset, ", level,
                        ": take loading = \"quiet\", or raise particles_per_cell");
     if (!saturated.empty())
         seen.found = false, seen.reason = saturated, seen.over = false;
-    else if (grows && seen.found && folds < 1)
+    else if (grows && seen.found && folds < 1 && likely_driven_by_mesh(parameters).empty())
         summary.hint(sentence("the wave grows only by exp(", folds, ") in the ",
                               frequency * (seen.end - seen.begin) / (2 * pi),
                               " periods that are measured at a time: raise "

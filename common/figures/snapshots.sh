@@ -11,5 +11,5 @@ if [ $# = 0 ]; then
 fi
 script=common/figures/fields.awk
 [ "$kind" != particles ] || script=common/figures/particles.awk
-names=$(sed -nE 's/^\[(species|material|grain)[.](.*)\]$/\1 \2/p' "$run/case.toml" | tr '\n' ' ')
+names=$(sed -nE 's/^\[(species|material|grain)[.](.*)\]$/\1 \2/p' "$run/case.toml" 2> /dev/null | tr '\n' ' ')
 awk -f common/columns.awk "$1" | awk -v kind="$kind" -v names="$names" -f common/figures/tables.awk -f $script - "$@"

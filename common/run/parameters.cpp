@@ -65,8 +65,7 @@ std::string kind_of(const Setting& setting) {
 
 bool is_word(const std::string& text) {
     const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    const auto first = static_cast<unsigned char>(text[0]);  // 0 of no text
-    return std::isalpha(first) && std::ranges::all_of(text, allowed);
+    return std::isalpha(static_cast<unsigned char>(text[0])) && std::ranges::all_of(text, allowed);
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -175,7 +174,8 @@ std::string ParameterTable::nearest(const std::string& name) const {
     // The right key in the wrong section is the other common slip.
     const std::string key = name.substr(name.rfind('.') + 1);
     for (const Entry& entry : entries_)
-        if ((least > 2 || key == name) && entry.name.substr(entry.name.rfind('.') + 1) == key) return entry.name;
+        if ((least > 2 || key == name) && entry.name.substr(entry.name.rfind('.') + 1) == key)
+            return entry.name;
     return best;
 }
 
@@ -209,9 +209,11 @@ void ParameterTable::make_item(const Setting& setting) {
         if (list.items.size() == most_items)
             throw InputError(setting.place + ": more than " + std::to_string(most_items) +
                              " items in [" + list.name + "]: take some out");
-        if (setting.place.starts_with("command line") && !list.items.empty() && is_first_rank())
-            std::fprintf(stderr, "note: the case has no [%s.%s]; the command line adds it\n",
-                         list.name.c_str(), item.c_str());
+        for (const std::string& other : list.items)
+            if (setting.place.starts_with("command line") && is_first_rank() &&
+                edit_distance(item, other) <= item.size() / 4)
+                std::fprintf(stderr, "note: [%s.%s] is new; the case has [%s.%s]\n",
+                             list.name.c_str(), item.c_str(), list.name.c_str(), other.c_str());
         list.items.push_back(item);
         groups_.push_back({list.name + " '" + item + "'", {}});
         list.append(item);

@@ -89,8 +89,8 @@ void listen_to(int signal) {
 // Whether a file of this name is one that a run writes.
 bool is_ours(const std::string& name) {
     static const std::regex ours(
-        "(case.toml|history.dat|summary.json|spectrum.dat|profile.dat|pack.txt|fields.pvd|"
-        "particles.pvd|"
+        "(case[.]toml|summary[.]json|pack[.]txt|(history|spectrum|profile)[.]dat|(fields|particles)"
+        "[.]pvd|"
         "(fields|particles|profile|phase|velocities|fringes|grains|checkpoint)_[0-9]{6,}"
         "[.](dat|vti|vtp|h5|bin))([.]partial)?");
     return std::regex_match(name, ours);

@@ -132,12 +132,14 @@ inline double viscous_heating(const Grid& grid, double viscosity, const Nodes& g
 /// surface of fluid that has left its end.
 /// in:     cells.M, surface
 /// out:    cells.outside
+/// errors: NumericalError where a void reaches to ends of different pressures
 inline void fill_voids(const Grid& grid, const Boundaries& boundaries, Cells& c) {
-    const auto pushes = [&](Side side) {
-        return boundaries.is(side, BoundaryKind::open) && boundaries.side[side].pressure != 0;
-    };
-    if (std::ranges::none_of(all_sides, pushes)) return;
-    c.outside.setZero(grid.size());
+    const auto open = [&](Side side) { return boundaries.is(side, BoundaryKind::open); };
+    if (std::ranges::none_of(all_sides, [&](Side side) {
+            return open(side) && boundaries.side[side].pressure != 0;
+        }))
+        return;
+    c.outside.setConstant(grid.size(), NAN);
     std::vector<std::pair<long, double>> found;
     const auto enter = [&](long i, long j, double pressure) {
         const auto wrapped = [](const common::Axis& axis, long k) {
@@ -146,12 +148,14 @@ inline void fill_voids(const Grid& grid, const Boundaries& boundaries, Cells& c)
         i = wrapped(grid.x, i), j = wrapped(grid.z, j);
         if (i < 0 || j < 0 || i >= grid.x.cells || j >= grid.z.cells) return;
         const long n = grid.index(i, j);
-        if (c.outside[n] != 0 || (c.M[n] > 0 && c.surface[n] == 0)) return;
-        c.outside[n] = pressure;
-        found.emplace_back(n, pressure);
+        if (c.M[n] > 0 && c.surface[n] == 0) return;
+        if (c.outside[n] != pressure && !std::isnan(c.outside[n]))
+            common::fail("a void reaches to open ends with the pressures ", pressure, " and ",
+                         c.outside[n], ", and has one: make them alike, or close an end");
+        if (c.outside[n] != pressure) found.emplace_back(n, c.outside[n] = pressure);
     };
     for (const Side side : all_sides) {
-        if (!pushes(side)) continue;
+        if (!open(side)) continue;
         const long last = is_low_side(side) ? 0 : (is_x_side(side) ? grid.x : grid.z).cells - 1;
         for (long k = 0; k < (is_x_side(side) ? grid.z : grid.x).cells; ++k)
             enter(is_x_side(side) ? last : k, is_x_side(side) ? k : last,
@@ -164,6 +168,7 @@ inline void fill_voids(const Grid& grid, const Boundaries& boundaries, Cells& c)
         enter(i - 1, j, pressure), enter(i + 1, j, pressure);
         enter(i, j - 1, pressure), enter(i, j + 1, pressure);
     }
+    c.outside = c.outside.array().isNaN().select(0.0, c.outside);
     fill_pressure(grid, c.outside);
 }
 

@@ -89,11 +89,12 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
         if (end.kind != BoundaryKind::open || end.pressure == 0) continue;
         for_each_ghost(grid, side, [&](long, long inside) {
             if (cells.filled[inside] == 0)
-                common::fail("the fluid has left ", side_names[side], " ",
+                common::fail("there is no fluid at ", side_names[side], " ",
                              cell_and_time(grid, inside, state.time),
                              ", and the pressure outside, ", end.pressure,
                              ", does not reach it across a void: take flip, where it does, or "
-                             "lower time.end");
+                             "boundary.pressure_",
+                             side_names[side], " = 0, or end before");
         });
     }
 }

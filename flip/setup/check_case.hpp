@@ -68,9 +68,6 @@ inline void validate(const Case& parameters, const std::string& program) {
                          parameters.interface < parameters.grid.x.low + parameters.grid.x.length;
     refuse(parameters.setup == "riemann" && !between, "setup.interface = ", parameters.interface,
            " is not on the mesh, from ", parameters.grid.x.low, " to ", parameters.grid.x.high());
-    refuse(parameters.energy_limit > 0 && parameters.energy_limit <= 1,
-           "time.energy_limit = ", parameters.energy_limit,
-           " is what a run begins with: raise it above 1, or set 0 for none");
     refuse_sizes(parameters);
     refuse_boundaries(parameters);
     refuse_around_axis(parameters);

@@ -224,19 +224,17 @@ inline void refuse_region(const Case& parameters, const RegionCase& r) {
            (r.hydrostatic ? "hydrostatic = true" : "flow = \"" + r.flow + "\""));
 }
 
-/// Refuses fluid that cannot rest: the integral of its weight depends on the way to a place.
+/// Refuses fluid that is far from rest: a tenth of its weight depends on the way to a place, or its pressure
+/// changes by as much without weight. Less is a perturbation.
 inline void refuse_unbalanced(const Case& parameters, const RegionCase& r) {
     if (!r.hydrostatic) return;
     const std::string rests = sentence("region.", r.name, ".hydrostatic = true ");
-    refuse(!r.gas.pressure.is_number(), rests,
-           "makes the pressure of that at its center, and region.", r.name,
-           ".pressure is a formula: give a number, or take out hydrostatic");
     for (const bool x : {true, false})
         refuse((x ? parameters.grid.x : parameters.grid.z).periodic &&
                    (x ? parameters.gravity_x : parameters.gravity_z) != 0,
                rests, "needs walls that hold the fluid, and along ", (x ? "x" : "z"),
                ", a periodic direction, gravity lets it fall for ever: set both ends to \"slip\"");
-    double most = 0, apart = 0;
+    double most = 0, apart = 0, lowest = HUGE_VAL, highest = -HUGE_VAL;
     constexpr long places = 16;
     for (long n = 0; n < places * places; ++n) {
         const common::Axis &ax = parameters.grid.x, &az = parameters.grid.z;
@@ -246,12 +244,17 @@ inline void refuse_unbalanced(const Case& parameters, const RegionCase& r) {
         const double p = detail::weight_above(parameters, r, x, z);
         most = std::max(most, std::fabs(p));
         apart = std::max(apart, std::fabs(p - detail::weight_above(parameters, r, x, z, false)));
+        const double given = r.gas.pressure.at(x, z, std::hypot(x - r.center_x, z - r.center_z));
+        lowest = std::min(lowest, given), highest = std::max(highest, given);
     }
-    refuse(apart > 1e-3 * most, rests,
-           "needs fluid that can rest, and by two ways from its center its "
-           "pressures differ by ",
-           apart, ": take out hydrostatic, or what changes its density",
-           (r.turns() ? " or rotation" : ""), " across its weight");
+    refuse(highest - lowest > 0.1 * most, rests, "adds the weight of up to ", most,
+           " to the pressure at the center, and region.", r.name, ".pressure changes by ",
+           highest - lowest, " itself: give a number, or take out hydrostatic");
+    refuse(apart > 0.1 * most, rests,
+           "needs fluid that can rest, and its weight above the center, up to ", most,
+           ", differs by ", apart, " from way to way: take out hydrostatic, or let ",
+           r.turns() ? "neither its density nor its rotation change along the axis"
+                     : "its density change along gravity alone");
 }
 
 /// Refuses densities of 0 and pressures that the equation of state does not have, at the places of

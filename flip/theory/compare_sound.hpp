@@ -185,16 +185,6 @@ inline void compare_wave(const FinishedRun& run) {
     run.info("frequency", frequency, "1/time", "of velocity");
     const RegionCase& r = region_with_flow(parameters, "wave");
     const bool odd = run.program == "flip" && drowns_in_noise(parameters, r);
-    // The rms of what is not the wave, times the root of 2 like an amplitude.
-    const double size = std::exp(velocity.log_size.back()),
-                 all = rms_velocity(run.parameters, run.cells),
-                 rest = std::sqrt(std::max(0.0, 2 * all * all - size * size));
-    if (rest > size)
-        return run.not_measured("frequency_over_ck", "what is not the wave has the amplitude ",
-                                rest, " at time.end, and the wave ", size,
-                                odd ? ": take an even number of particles across a cell, or "
-                                      "flip.density = \"particles\""
-                                    : ": raise the amplitude, or lower time.end");
     const double cells = double(parameters.grid.x.cells) / double(parameters.mode),
                  moved = particles_moved(parameters, r),
                  shocks =
@@ -202,6 +192,15 @@ inline void compare_wave(const FinishedRun& run) {
     double steepened = 0;  // the part of the way to a shock that the wave has come
     for (std::size_t n = 1; n < times.size(); ++n)
         steepened += std::exp(theory.log_size[n]) * (times[n] - times[n - 1]) / (period * shocks);
+    // The rms of what is not the wave, times the root of 2 like an amplitude.
+    const double size = std::exp(velocity.log_size.back()),
+                 all = rms_velocity(run.parameters, run.cells),
+                 rest = std::sqrt(std::max(0.0, 2 * all * all - size * size));
+    if (odd && rest > size)
+        return run.not_measured("frequency_over_ck", "what is not the wave has the amplitude ",
+                                rest, " at time.end, and the wave ", size,
+                                ": take an even number of particles across a cell, or "
+                                "flip.density = \"particles\"");
     if (const double speed = std::fabs(r.amplitude) * sound_speed_of(parameters, r);
         r.noise > 0.1 * speed)
         run.hint("region.", r.name, ".noise = ", r.noise, " is not far below ", speed,
@@ -215,9 +214,10 @@ inline void compare_wave(const FinishedRun& run) {
         run.hint(
             "with an odd number of particles across a cell one is at its center, where the "
             "density of the cell bends, and weak flow grows: take an even number");
-    else if (steepened > 0.3 && theory.log_size.back() > 0.1)
-        run.hint("explicit steps let this wave grow by a factor ", std::exp(theory.log_size.back()),
-                 " until time.end, and on the way its crests become shocks: lower region.", r.name,
+    else if (steepened > 0.3)
+        run.hint("the crests of this wave, which explicit steps let grow by a factor ",
+                 std::exp(theory.log_size.back()),
+                 " until time.end, become shocks on the way: lower region.", r.name,
                  ".amplitude, time.end or time.cfl");
     else
         run.hint(

@@ -144,8 +144,7 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                                  per_c2);
                     const Vector way = step * inverse_gamma(u, per_c2);  // dt / gamma
                     const Vector to_x = x + way * u.x, to_z = z + way * u.z;
-                    // As they have moved: rounded, so that J is that of rho.
-                    const Vector D_x = (to_x - x) * cells_per_x, D_z = (to_z - z) * cells_per_z;
+                    const Vector D_x = way * u.x * cells_per_x, D_z = way * u.z * cells_per_z;
                     const Vector i = Stencil<l>::from_border(grid.x, per_dx, to_x),
                                  j = Stencil<l>::from_border(grid.z, per_dz, to_z);
 
@@ -185,11 +184,9 @@ inline long move_particles(const InterleavedField& field, const Grid& grid, doub
                     const Velocity<double> u{particles.ux_p[p], particles.uy_p[p],
                                              particles.uz_p[p]};
                     const double way = dt * inverse_gamma(u, per_c_squared);
-                    const double x_p = particles.x_p[p], z_p = particles.z_p[p];
-                    Trajectory x{column, (x_p - x_anchor) * per_dx,
-                                 (double(ParticleReal(x_p + way * u.x)) - x_p) * per_dx};
-                    Trajectory z{row, (z_p - z_anchor) * per_dz,
-                                 (double(ParticleReal(z_p + way * u.z)) - z_p) * per_dz};
+                    Trajectory x{column, (particles.x_p[p] - x_anchor) * per_dx,
+                                 way * u.x * per_dx};
+                    Trajectory z{row, (particles.z_p[p] - z_anchor) * per_dz, way * u.z * per_dz};
                     if (!(std::fabs(x.D) <= 1 && std::fabs(z.D) <= 1)) {
                         ++lost[number];
                         continue;

@@ -68,7 +68,8 @@ struct Stencil {
     template <class Real>
     static Real from_border(const common::Axis& axis, double per_spacing, const Real& x) {
         using Number = NumberOf<Real>;
-        return (x - Number(axis.low)) * Number(per_spacing) - Number(low);
+        // The product comes last: all round it alike, whether the machine fuses products or not.
+        return (x - Number(axis.low + low * axis.spacing())) * Number(per_spacing);
     }
 
     /// The borders of a cell within the mesh: nothing is behind a wall.
@@ -80,9 +81,9 @@ struct Stencil {
     }
 };
 
-/// The cell of a particle, row by row. in: a position within the mesh
+/// The cell of a particle, row by row, to the last digit as the push finds it. in: a position within the mesh
 template <int l>
-inline int cell_of(const Grid& grid, double x, double z) {
+inline int cell_of(const Grid& grid, ParticleReal x, ParticleReal z) {
     const int columns = int(Stencil<l>::cells(grid.x)), rows = int(Stencil<l>::cells(grid.z));
     const int i =
         std::min(int(Stencil<l>::from_border(grid.x, 1 / grid.x.spacing(), x)), columns - 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,14 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
     warn(warnings, omega_p_dt > 1.62, "omega_p dt = ", omega_p_dt,
          " is above 1.62, where oscillations of a warm plasma may grow: lower time.dt to ",
          w.dt * 1.5 / omega_p_dt);
+    // In the outer half of the mesh a way per step is a whole number of these.
+    const double digit = std::numeric_limits<ParticleReal>::epsilon() *
+                         std::max(w.grid.x.length, w.grid.z.length) / 2;
     for (const SpeciesScales& s : scales.species) {
+        const double way = s.thermal_speed * w.dt;
+        warn(warnings, way > 0 && way < 50 * digit, s.name, ": particles go ", way / digit,
+             " times the last digit of their positions in a step, fewer than 50, and are slower or "
+             "faster than their velocities: compile with REAL=double, or raise time.dt");
         warn(warnings, s.debye_length > 0 && s.debye_length < 0.2 * cell, s.name,
              ": the Debye length is ", s.debye_length / cell,
              " cells, below 0.2: where the plasma drifts the mesh may heat it, watch the energy");
