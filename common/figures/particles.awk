@@ -1,7 +1,6 @@
 # particles.awk: the gnuplot commands of particles.gp, after tables.awk.
 $1 + 0 == $1 {
-    count[files]++
-    seen[$(group = number["species"] + number["material"] + number["grain"])]
+    count[files]++; seen[$(group = number["species"] + number["material"] + number["grain"])]
     speed = 0
     for (i = 1; i <= NF; i++) if (name[i] ~ /^v_[xyz]$/) speed += $i * $i
     if (speed > fastest) fastest = speed
@@ -26,8 +25,7 @@ function row(k, a, b, colored,    f) {
 
 function page() {
     begin_page(250, to - from + 1, rows_of_page)
-    print "color_of(n) = n < 0 ? 0x777777 : int(word('29362 13983232 40563 13400487 15113984 5682409 7829367 0', 1 + int(n) % 8))"
-    printf "set key at screen %.5f, graph 1 left top Left reverse samplen 0.5 font ',16'\n", (115 + (to - from + 1) * (width + 25)) / wide
+    print "color_of(n) = n < 0 ? 0x777777 : int(word('29362 13983232 40563 13400487 15113984 5682409 7829367 0', 1 + int(n) % 8)); set key at screen " (115 + (to - from + 1) * (width + 25)) / wide ", graph 1 left top Left reverse samplen 0.5 font ',16'"
     row(1, x, plane ? other : number["v_x"] ? number["v_x"] : columns, 0)
     if (rows_of_page == 2) row(2, x, other, 1)
     print "unset multiplot"

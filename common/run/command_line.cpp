@@ -1,6 +1,5 @@
 // The command line: options, one case file, overrides.
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -62,8 +61,7 @@ std::string list_cases(const ProgramInfo& info, const std::string& wrong) {
     for (const auto& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
     std::ranges::sort(names);
-    const std::string name = fs::path(wrong).stem().string();
-    if (std::ranges::find(names, name) != names.end())
+    if (const std::string name = fs::path(wrong).stem(); std::ranges::count(names, name) > 0)
         return "; did you mean " + (folder / name).string() + ".toml?";
     std::string list;
     for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
