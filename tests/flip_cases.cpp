@@ -124,6 +124,9 @@ TEST_CASE("a drop of gas stays at rest under the pressure outside of open ends")
         for (const double v : r.particles().vx_p) fastest = worst({fastest, v});
         for (const double v : r.particles().vz_p) fastest = worst({fastest, v});
         CHECK(fastest <= 1e-13);
+        w.boundaries[z_high].kind = "open", w.boundaries[z_high].pressure = 0;
+        CHECK_THROWS_WITH_AS(FlipRun(w).step(), doctest::Contains("a void reaches to open ends"),
+                             common::NumericalError);
     }
 }
 

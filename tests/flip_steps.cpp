@@ -559,6 +559,8 @@ TEST_CASE("every step keeps mass and momentum and energy whatever it holds" *
                             if (row && ends.name == "inflow along z") continue;
                             Case w = flip_case(7, row ? 1 : 6, "periodic", "periodic");
                             ends.set(w);
+                            for (BoundaryCase& end : w.boundaries)  // a void has one
+                                if (hole && end.pressure != 0) end.pressure = 0.5;
                             if (row) lay_in_row(w);
                             w.materials = {{"air", 1.4, 0}, {"water", 4, 0.5}, {"helium", 5.0 / 3}};
                             if (method.name == "explicit" || consistent)

@@ -347,6 +347,7 @@ grains incline_block.toml boundary.y_low=slip
     begins 3 cells from it: take "frictional", with boundary.friction = 0 where it is smooth
 # A name that no grain has, as one that is misspelt.
 grains rebound.toml material.defualt.viscosity=0.1
+    warning: [material.defualt] is new; the case has [material.default]
     warning: material.defualt is nowhere: no grain is of it
 grains rebound.toml material.soft.E=1e3 pair.p.b=soft pair.p.friction=0.1
     warning: material.soft is nowhere: no grain is of it

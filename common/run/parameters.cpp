@@ -212,7 +212,7 @@ void ParameterTable::make_item(const Setting& setting) {
         for (const std::string& other : list.items)
             if (setting.place.starts_with("command line") && is_first_rank() &&
                 edit_distance(item, other) <= item.size() / 4)
-                std::fprintf(stderr, "note: [%s.%s] is new; the case has [%s.%s]\n",
+                std::fprintf(stderr, "warning: [%s.%s] is new; the case has [%s.%s]\n",
                              list.name.c_str(), item.c_str(), list.name.c_str(), other.c_str());
         list.items.push_back(item);
         groups_.push_back({list.name + " '" + item + "'", {}});

@@ -40,7 +40,7 @@ struct CellAcceleration {
 ///   c^2 = 1/(rho compressibility);  of a cell with a free surface, that of the material in it
 /// in:     masses of the cells and what the state knows of them
 /// out:    mass, per_mass, rho, filled, p, c, share, v, with ghosts
-/// errors: NumericalError where fluid has left an end whose pressure outside would push it
+/// errors: NumericalError where no fluid is at an open end that has a pressure outside
 inline void find_pressure(const Problem& problem, const State& state, PicCells& cells) {
     const Grid& grid = problem.grid;
     const std::vector<Material>& materials = problem.materials;
@@ -87,15 +87,15 @@ inline void find_pressure(const Problem& problem, const State& state, PicCells& 
     for (const Side side : all_sides) {
         const Boundary& end = problem.boundaries.side[side];
         if (end.kind != BoundaryKind::open || end.pressure == 0) continue;
-        for_each_ghost(grid, side, [&](long, long inside) {
-            if (cells.filled[inside] == 0)
-                common::fail("there is no fluid at ", side_names[side], " ",
-                             cell_and_time(grid, inside, state.time),
-                             ", and the pressure outside, ", end.pressure,
-                             ", does not reach it across a void: take flip, where it does, or "
-                             "boundary.pressure_",
-                             side_names[side], " = 0, or end before");
-        });
+        bool reached = false;
+        for_each_ghost(grid, side,
+                       [&](long, long inside) { reached = reached || cells.filled[inside] != 0; });
+        if (!reached)
+            common::fail("there is no fluid at ", side_names[side], " at t = ", state.time,
+                         ", and the pressure outside, ", end.pressure,
+                         ", does not reach it across a void: take flip, where it does, or "
+                         "boundary.pressure_",
+                         side_names[side], " = 0, or end before");
     }
 }
 
