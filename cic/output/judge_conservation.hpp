@@ -13,8 +13,9 @@ namespace cic {
 
 /// The largest change of the momentum, of sum (2 K M)^1/2 of all species, K kinetic energy, M mass, at the
 /// start or, where that is nothing, at its largest. The momentum scheme keeps it to round-off, and is judged
-/// only where it did not; the energy scheme where a species drifts, and where drifts do not cancel, of the
-/// momentum that they have together, but for that of the noise of as many particles. Of a magnetized plasma the momentum along B.
+/// only where it did not; the energy scheme where a species drifts. Where drifts do not cancel it is judged
+/// by the momentum that they have together, with a tolerance for the noise of so many particles. Of a
+/// magnetized plasma the momentum along B.
 /// in:     least_energy, below which all energy is round-off
 inline void judge_momentum(const Case& parameters, double least_energy, const History& history,
                            Summary& summary) {

@@ -314,9 +314,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                : 0;
     warn(warnings, on_mesh > 0 && std::fabs(on_mesh - 1) > parameters.theory_tolerance,
          "on this mesh the wave grows at ", on_mesh,
-         " of the rate of the fluids, beyond "
-         "theory.tolerance = ",
-         parameters.theory_tolerance, ": refine the mesh");
+         " of the rate of the fluids, beyond theory.tolerance = ", parameters.theory_tolerance,
+         ": refine the mesh");
     const Comparison& comparison = comparison_of(parameters);
     if (comparison.warn != nullptr) comparison.warn(parameters, warnings);
     const std::vector<std::pair<const char*, double>> intervals{

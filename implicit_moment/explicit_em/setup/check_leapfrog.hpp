@@ -57,7 +57,8 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
                          std::max(w.grid.x.length, w.grid.z.length) / 2;
     for (const SpeciesScales& s : scales.species) {
         const double way = s.thermal_speed * w.dt;
-        warn(warnings, way > 0 && way < 50 * digit, s.name, ": particles go ", way / digit,
+        warn(warnings, sizeof(ParticleReal) < sizeof(double) && way > 0 && way < 50 * digit, s.name,
+             ": thermal particles go ", way / digit,
              " times the last digit of their positions in a step, fewer than 50, and are slower or "
              "faster than their velocities: compile with REAL=double, or raise time.dt");
         warn(warnings, s.debye_length > 0 && s.debye_length < 0.2 * cell, s.name,
