@@ -24,7 +24,7 @@ function row(k, a, b, colored,    f) {
 }
 
 function page() {
-    begin_page(250, to - from + 1, rows_of_page)
+    begin_page(250 + (longest > 6 ? 13 * (longest - 6) : 0), to - from + 1, rows_of_page)
     print "color_of(n) = n < 0 ? 0x777777 : int(word('29362 13983232 40563 13400487 15113984 5682409 7829367 0', 1 + int(n) % 8)); set key at screen " (115 + (to - from + 1) * (width + 25)) / wide ", graph 1 left top Left reverse samplen 0.5 font ',16'"
     row(1, x, plane ? other : number["v_x"] ? number["v_x"] : columns, 0)
     if (rows_of_page == 2) row(2, x, other, 1)
@@ -33,7 +33,10 @@ function page() {
 
 END {
     split(names, list, " "); for (i = 1; i in list; i += 2) if (number[list[i]]) entry[++entries] = list[i + 1]
-    for (i = 1; i <= entries && entries <= 8; i++) if (i - 1 in seen) key = key sprintf(", keyentry with points pt 7 ps 1 lc rgb color_of(%d) title '%s'", i - 1, plain(entry[i]))
+    for (i = 1; i <= entries && entries <= 8; i++) if (i - 1 in seen) {
+        key = key sprintf(", keyentry with points pt 7 ps 1 lc rgb color_of(%d) title '%s'", i - 1, plain(entry[i]))
+        if (length(entry[i]) > longest) longest = length(entry[i])
+    }
     other = number["z"] ? number["z"] : number["y"]
     x = number["x"]
     plane = other && high[other] - low[other] > 1e-9 * (high[x] - low[x])

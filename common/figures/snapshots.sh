@@ -12,4 +12,6 @@ fi
 script=common/figures/fields.awk
 [ "$kind" != particles ] || script=common/figures/particles.awk
 names=$(sed -nE 's/^\[(species|material|grain)[.](.*)\]$/\1 \2/p' "$run/case.toml" 2> /dev/null | tr '\n' ' ')
+# A current sheet has species without sections.
+[ -n "$names" ] || names=$(sed -n '1s/ /\n/gp' "$run/history.dat" 2> /dev/null | sed -n 's/^kinetic_/species /p' | tr '\n' ' ')
 awk -f common/columns.awk "$1" | awk -v kind="$kind" -v names="$names" -f common/figures/tables.awk -f $script - "$@"
