@@ -350,6 +350,43 @@ TEST_CASE("damping that theory does not have is a result that falls short" *
     CHECK(damped["results"]["damping"].dump().find("set field.theta = 0.5") != std::string::npos);
 }
 
+TEST_CASE("what a step takes of all waves of a seed is as the linear step has it" *
+          doctest::description("physics")) {
+    // The seed excites a slow wave, which is followed, and fast ones, which moments damp more.
+    const std::string seeded =
+        "implicit_moment/cases/oblique_whistler.toml grid.cells_x=4 grid.cells_z=64 "
+        "grid.length_x=0.4 grid.length_z=6.283185307 time.dt=0.1 time.end=150 "
+        "uniform.particles_per_cell=16 uniform.mode_x=0 uniform.mode_z=1 uniform.B_x=0 "
+        "uniform.B_y=0 uniform.B_z=0.5 uniform.wave_B_x=0 uniform.wave_B_y=0 uniform.wave_B_z=0 "
+        "uniform.wave_E_x=0 uniform.wave_E_z=0 species.electrons.mass=0.1 "
+        "species.electrons.wave_x=0 "
+        "species.electrons.wave_y=0 species.electrons.wave_z=0 species.ions.wave_x=0 "
+        "species.ions.wave_y=0 species.ions.wave_z=0 theory.component=E_y theory.near=0.3 "
+        "uniform.wave_E_y=";
+    for (const std::string change :
+         {"1e-4", "1e-6", "1e-4 field.theta=0.7", "1e-4 field.response=mass_matrix"}) {
+        const Json drift = run("seeded", seeded + change)["results"]["energy_drift"];
+        CAPTURE(change);
+        CAPTURE(drift.dump());
+        CHECK(drift["verdict"] == "PASS");
+        if (change.ends_with("matrix")) continue;
+        CHECK(drift["value"].get<double>() < -0.1);
+        CHECK(std::fabs(drift["value"].get<double>() - drift["expected"].get<double>()) <= 1e-3);
+    }
+    // Below the last digits of the energy of the uniform field nothing is judged.
+    CHECK(run("seeded", seeded + "1e-9")["results"]["energy_drift"]["verdict"] == "NOT MEASURED");
+}
+
+TEST_CASE("test particles that gyrate keep no momentum and are not judged by it" *
+          doctest::description("physics")) {
+    const Json results =
+        run("gyrates",
+            "implicit_moment/cases/langmuir.toml theory.wave=none uniform.B_y=1 time.dt=0.5 "
+            "time.end=20 species.electrons.density=1e-9 species.electrons.wave_x=0 "
+            "species.electrons.drift_x=0.9 particles.relativistic=false")["results"];
+    CHECK(!results.contains("momentum_change"));
+}
+
 TEST_CASE("speeds that come to exceed that of light are a result that falls short" *
           doctest::description("physics")) {
     const Json fast = run("fast",

@@ -389,8 +389,9 @@ TEST_CASE("profiles that are not those of reconnection fall out of their windows
 
 TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") {
     Case w = magnetized(true);
-    // what_else, beside what theta has taken.
-    const auto verdict = [&](std::vector<double> drift, const Case& of, double what_else = 0) {
+    // what_else, beside what theta has taken; energy, all of it.
+    const auto verdict = [&](std::vector<double> drift, const Case& of, double what_else = 0,
+                             double energy = 10) {
         common::History history(folder_of_test() + "/energy/history.dat");
         std::filesystem::create_directories(folder_of_test() + "/energy");
         history.columns({{{"energy", ""},
@@ -400,7 +401,8 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
                           {"kinetic_ions", "energy"},
                           {"kinetic_electrons", "energy"}},
                          {}});
-        for (const double one : drift) history.row(std::vector<double>{1, one, what_else, 0, 0, 0});
+        for (const double one : drift)
+            history.row(std::vector<double>{energy, one, what_else, 0, 0, 0});
         common::Summary summary;
         compare_energy(of, history, summary);
         REQUIRE(summary.has_verdict());
@@ -429,10 +431,23 @@ TEST_CASE("a uniform plasma whose energy changes by more than 5 percent fails") 
     // more or less.
     Case damped = magnetized(false, 1);
     damped.uniform.B_x = damped.uniform.B_y = damped.uniform.B_z = 0;
-    damped.end = 60, damped.wave = "langmuir";
+    damped.end = 60, damped.wave = "langmuir", damped.loading = "random";
     CHECK(verdict({0, -0.89}, damped));
     CHECK(!verdict({0, -0.89}, damped, -0.1));
     CHECK(!verdict({0, -0.5}, damped, 0.39));
+    // A quiet start has what the linear step makes of the seed, and an eighth of its energy beside it.
+    damped.loading = "quiet", damped.uniform.species[1].wave_x = 0.01;
+    const SeededEnergy seed = seeded_energy(damped);
+    CHECK(seed.at_start / (0.25 * 0.2 * 0.01 * 0.01 * 4 * 5) == facts::about(1).epsilon(1e-12));
+    CHECK(seed.change < -0.5);
+    for (const double part : {1.0, 8.0 / 9}) {
+        const double all = seed.at_start / part, taken = part * seed.change,
+                     uneven = std::min(0.05, 1 - part);
+        CHECK(verdict({0, taken}, damped, 0, all));
+        CHECK(verdict({0, taken - uneven}, damped, 0, all));
+        CHECK(!verdict({0, taken + 0.02}, damped, 0, all));
+        CHECK(!verdict({0, taken - uneven - 0.02}, damped, 0, all));
+    }
     // GEM: 0.6 %.
     Case gem;
     CHECK(verdict({0, -0.005}, gem));

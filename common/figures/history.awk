@@ -91,7 +91,7 @@ function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label,
     title = p == "energy" ? "energy" : p == "zero" ? "what should be 0" : p == "modes" ? "amplitudes of modes" : n == 1 ? name[of[1]] : p == 1 ? "numbers" : p
     if (hidden) title = title ", the largest " n " of " n + hidden
     print "set title '" plain(title) "' offset 0, -0.4"
-    print "set ylabel '" (p == "zero" ? "absolute value" : p == 1 || title == p && p != "energy" ? "" : plain(unit[of[1]])) "' offset " (p == "zero" ? 1.5 : 0.5) ", 0"
+    print "set ylabel '" (p == "zero" ? "absolute value" : p == 1 || title == p && p != "energy" ? "" : plain(unit[of[1]])) "' offset 1, 0"
     if (p == "modes" || p == "zero") {
         bottom = p == "modes" ? 1e-8 * top : 1e-4 * least
         if (bottom < 1e-300) bottom = 1e-300

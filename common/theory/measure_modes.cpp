@@ -428,7 +428,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (rows.count() < 8 * block)
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +
                       " rows of the history are between the transient of the start and the end of "
-                      "the linear phase" +
+                      "the linear phase (shorter steps between rows give more)" +
                       (wanted.growth > 0 ? cure : std::string()));
     result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
     const double length = result.end - result.begin;

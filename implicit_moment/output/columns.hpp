@@ -82,15 +82,21 @@ inline void add_mean_field(const Grid& grid, const FieldState& field, common::Ro
                 interior(grid, field.E.all.data() + a * grid.size()).mean());
 }
 
-/// What of an energy is not that of the uniform magnetic field, or of the guide field of a sheet, which
-/// nothing can use.
-inline double usable_energy(const Case& w, double energy) {
+/// The energy of the uniform magnetic field, or of the guide field of a sheet, which nothing can use.
+inline double idle_energy(const Case& w) {
     const UniformCase& u = w.uniform;
     const HarrisCase h = harris_of(w);
     const double B2 = w.is_uniform() ? u.B_x * u.B_x + u.B_y * u.B_y + u.B_z * u.B_z
                                      : std::pow(h.guide_field / h.light_over_alfven, 2);
-    const double usable = energy - 0.5 * B2 * w.grid.x.length * w.grid.z.length;
-    return usable > 1e-9 * energy ? usable : energy;
+    return 0.5 * B2 * w.grid.x.length * w.grid.z.length;
+}
+
+/// Whether an energy stands out of the round-off of the idle one, and what of it can be used; else all of it.
+inline bool is_usable(const Case& w, double energy) {
+    return energy - idle_energy(w) > 1e-12 * energy;
+}
+inline double usable_energy(const Case& w, double energy) {
+    return is_usable(w, energy) ? energy - idle_energy(w) : energy;
 }
 
 }  // namespace implicit_moment

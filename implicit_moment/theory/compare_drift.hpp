@@ -43,8 +43,9 @@ inline void compare_drift(const Case& w, const common::History& history, common:
                      ? "the drift c E/B would be " + format(fast) +
                            " c, and theory has no Lorentz factor: lower uniform.E, or set "
                            "particles.relativistic = false"
-                     : "few particles per cell shift the frequencies: raise "
-                       "uniform.particles_per_cell");
+                     : cause_in_scheme(w, false) +
+                           "few particles per cell shift the frequencies: raise "
+                           "uniform.particles_per_cell");
     summary.result_at_most("mean_E_error", off / largest, "", 0.01, "exact for the scheme");
 
     double mass = 0, slowest = HUGE_VAL;  // of what has a charge

@@ -68,20 +68,25 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
     // Noise alone makes a tenth of this flux.
     const double flux = history.column("flux").back(), tears = 2 * pi * w.harris.thickness,
                  heat = relativistic_heat(w);
-    summary.hint(
+    const std::string tearing =
         heat > 0 ? hot_sheet(heat)
         : flux > 0.1 * w.harris.thickness && grid.x.length > tears
             ? sentence("the sheet tears by itself, for the box is longer than 2 pi lambda = ",
                        tears, ", and has reconnected ", flux,
                        " B0 d_i: shorten time.end or grid.length_x, or raise harris.particles")
-            : "the mesh changes a sheet that it does not resolve, and the more particles there are "
-              "the more this stands out of their noise: refine the mesh; few particles exchange "
-              "heat: raise harris.particles");
+            : "";
+    summary.hint(!tearing.empty() ? tearing
+                                  : "few particles exchange heat: raise harris.particles; or "
+                                    "refine the mesh, which heats what it does not resolve");
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
                        0.05, "equilibrium: neither heats nor cools");
     }
+    summary.hint(!tearing.empty() ? tearing
+                                  : "the mesh changes a sheet that it does not resolve, and the "
+                                    "more particles there are the more this stands out of their "
+                                    "noise: refine the mesh, or lower field.smoothing_passes");
     seen.report("n0 sech^2(z/lambda) + n_inf", "Harris 1962", summary);
 }
 

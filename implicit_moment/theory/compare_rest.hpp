@@ -7,7 +7,7 @@
 
 #include "common/run/run.hpp"
 #include "implicit_moment/output/columns.hpp"
-#include "implicit_moment/setup/case.hpp"
+#include "implicit_moment/theory/wave_theory.hpp"
 
 namespace implicit_moment {
 
@@ -61,7 +61,12 @@ inline void compare_rest(const Case& w, const common::History& history, common::
             return kinetic[n] - 0.5 * s.density * s.mass * area * drift2(n);
         };
         const std::string number = format(double(w.uniform.particles_per_cell));
-        summary.hint("the Debye length of " + s.name + " is " +
+        const bool by_theta =
+            w.field.theta > 0.5 && !w.leapfrog.chosen && heat(kinetic.size() - 1) < heat(0);
+        summary.hint((by_theta ? "field.theta = " + format(w.field.theta) +
+                                     " takes the energy of noise: set it to 0.5; or "
+                               : "") +
+                     cause_in_scheme(w, true) + "the Debye length of " + s.name + " is " +
                      format(std::sqrt(s.temperature_x / s.density) / std::fabs(s.charge) / dx) +
                      " cells, and " + number + " particles per cell" +
                      (w.loading == "random" ? ", placed at random," : "") +
@@ -71,7 +76,7 @@ inline void compare_rest(const Case& w, const common::History& history, common::
                      (w.field.uses_mass_matrix() || w.leapfrog.chosen
                           ? ""
                           : "; field.response = \"mass_matrix\" keeps the energy of all"));
-        const std::string source = "a plasma at rest: neither heats nor cools";
+        const std::string source = "a plasma that nothing drives: neither heats nor cools";
         if (1.5 * s.density * s.temperature_x * area > 0.05 * all_heat)
             summary.result("kinetic_over_initial_" + s.name, heat(kinetic.size() - 1) / heat(0), "",
                            1, 0.1, source);

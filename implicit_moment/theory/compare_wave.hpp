@@ -62,23 +62,24 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
         return "field.theta = " + format(w.field.theta) + " damps by some " + format(damping) +
                ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
                "time.dt";
+    const std::string near_c = drifts_near_c(w)
+                                   ? "; or raise field.smoothing_passes: particles near "
+                                     "c feed light that the mesh slows down (numerical "
+                                     "Cherenkov)"
+                                   : "";
     if (over)
         return "growth is over before it tells enough: lower the seed, and where that is below the "
                "noise raise the particles per cell" +
                (std::abs(theory.omega) * w.dt > 0.1
                     ? std::string("; or lower time.dt, which changes it")
-                    : "");
+                    : "") +
+               near_c;
     const double swing = swing_in_cells(w, std::abs(theory.omega));
     if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
         return "particles swing by " + format(swing) +
                " of a cell, and the force of linear splines jumps between cells, so that the wave "
                "is not linear: lower the seed to " +
                format(0.01 / swing) + " of it, or take particles.order = 2";
-    const std::string near_c = drifts_near_c(w)
-                                   ? "; or raise field.smoothing_passes: particles near "
-                                     "c feed light that the mesh slows down (numerical "
-                                     "Cherenkov)"
-                                   : "";
     return (grows
                 ? "the seed may be below the noise, the run too short, or a step too long: raise "
                   "the particles per cell or the seed, or time.end, or lower time.dt"

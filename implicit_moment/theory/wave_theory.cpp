@@ -587,11 +587,69 @@ bool drifts_near_c(const Case& w) {
     });
 }
 
+std::string cause_in_scheme(const Case& w, bool of_heat) {
+    if (w.leapfrog.chosen) return "";
+    double cells = 0, drift = 0;
+    for (const SpeciesCase& s : w.uniform.species) {
+        const Eigen::Vector3d v = mean_velocity(w, s);
+        drift = std::max(drift, v.norm());
+        for (const auto& [fast, T, spacing] :
+             {std::tuple(v[0], s.temperature_x, w.grid.x.spacing()),
+              {v[2], s.temperature_z, w.grid.z.spacing()}})
+            cells = std::max(cells, (std::fabs(fast) + std::sqrt(T / s.mass)) * w.dt / spacing);
+    }
+    std::string cause;
+    if (w.field.uses_mass_matrix() && w.field.solver != "newton_krylov" && cells > 0.5)
+        cause += "particles fly " + format(cells) +
+                 " cells in a step, and mass matrices are those of where they begin: set "
+                 "field.solver = \"newton_krylov\", or lower time.dt; or ";
+    if (!of_heat) return cause;
+    if (drift > 0 && !w.field.rotates_in_the_middle())
+        cause +=
+            "a drift turns into heat: take B in the middle of the step, field.B_level = "
+            "\"middle\"; or ";
+    if (w.field.rotates_on_mesh() && !w.field.uses_mass_matrix())
+        cause += "field.rotation = \"mesh\" heats: set it to \"particles\"; or ";
+    return cause;
+}
+
 double exact_to(const Case& w) {
     if (w.wave == "light")
         return w.leapfrog.chosen ? 1e-9 : std::min(0.005, 100 * w.field.solved_to());
     if (w.loading != "quiet" || has_linear_splines(w)) return 0.005;
     return std::min(0.005, 0.001 + 0.03 / double(w.uniform.particles_per_cell));
+}
+
+SeededEnergy seeded_energy(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const auto amplitude = [](double size, double degrees) {
+        return std::polar(size, degrees * pi / 180);
+    };
+    // B in the plane is made of A_y, on the mesh.
+    const WaveVector k = wave_vector(w), K = mesh_wave_vector(w);
+    const double on_mesh_x = k.z != 0 ? K.z / k.z : 1, on_mesh_z = k.x != 0 ? K.x / k.x : 1;
+    Eigen::VectorXcd state = Eigen::VectorXcd::Zero(place_of(u.species.size(), 0));
+    state.head(6) << amplitude(u.wave_E_x, u.phase_E_x), amplitude(u.wave_E_y, u.phase_E_y),
+        amplitude(u.wave_E_z, u.phase_E_z), on_mesh_x * amplitude(u.wave_B_x, u.phase_B_x),
+        amplitude(u.wave_B_y, u.phase_B_y), on_mesh_z * amplitude(u.wave_B_z, u.phase_B_z);
+    for (std::size_t s = 0; s < u.species.size(); ++s) {
+        const SpeciesCase& one = u.species[s];
+        state.segment(place_of(s, 0), 3) << amplitude(one.wave_x, one.phase_x),
+            amplitude(one.wave_y, one.phase_y), amplitude(one.wave_z, one.phase_z);
+    }
+    const auto energy = [&] {
+        double sum = state.head(6).squaredNorm() / (8 * pi);
+        for (std::size_t s = 0; s < u.species.size(); ++s)
+            sum += 0.5 * n0 * u.species[s].density * u.species[s].mass *
+                   state.segment(place_of(s, 0), 3 * MeshOfMode::images).squaredNorm();
+        return sum;
+    };
+    const double before = energy();
+    if (!(before > 0)) return {0, 0};
+    const Eigen::MatrixXcd step = cold_step(w);
+    for (long n = std::lround(w.end / w.dt); n > 0; --n) state = step * state;
+    // Over the plane, the square of a cosine is a half.
+    return {0.5 * before / n0 * w.grid.x.length * w.grid.z.length, energy() / before - 1};
 }
 
 std::vector<Eigen::Vector3d> mean_field(const Case& w, long steps) {

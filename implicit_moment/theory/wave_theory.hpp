@@ -42,6 +42,10 @@ void refuse_wave(const Case& w);
 /// Whether a species drifts with more than 0.7 c.
 bool drifts_near_c(const Case& w);
 
+/// What in the scheme of implicit_moment brakes a uniform plasma that nothing drives or, if asked for heat, heats it,
+/// with its cure and "; or "; empty where there is nothing.
+std::string cause_in_scheme(const Case& w, bool of_heat);
+
 /// How exact a wave is for which theory is the scheme: without particles to what the solver leaves, and with them
 /// to what their unevenness within a cell does, which falls as 1/particles_per_cell in a quiet start.
 /// note:   the field of linear splines jumps between cells, so that a wave is linear only while its particles move
@@ -56,6 +60,13 @@ common::Complex longitudinal_dispersion_on_mesh(const Case& w, common::Complex o
 ///     D = omega^2 - c^2 K^2 + S sum_m |weight(m) e|^2 omega^2 chi(k_m), e across K
 /// note:   an image at an angle to k answers as one along it.
 common::Complex transverse_dispersion_on_mesh(const Case& w, int sense, common::Complex omega);
+
+/// The energy of the seeded mode in a cold plasma at rest [that of history.dat], and by which part the steps of a run
+/// change it: by the linear step of implicit_moment, with all waves that the seed excites.
+struct SeededEnergy {
+    double at_start, change;
+};
+SeededEnergy seeded_energy(const Case& w);
 
 /// Mean E of the scheme after each of so many steps.
 ///     dE/dt = -4 pi sum n q u,   du/dt = q/m (E + u x B/c)

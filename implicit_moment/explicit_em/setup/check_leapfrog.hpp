@@ -52,6 +52,24 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
     warn(warnings, omega_p_dt > 1.62, "omega_p dt = ", omega_p_dt,
          " is above 1.62, where oscillations of a warm plasma may grow: lower time.dt to ",
          w.dt * 1.5 / omega_p_dt);
+    // Of light along an axis, waves of two cells are the slowest.
+    const auto warn_of_cherenkov = [&](const SpeciesCase& of, double u, double cells) {
+        const double squared = of.drift_x * of.drift_x + of.drift_y * of.drift_y +
+                               of.drift_z * of.drift_z,
+                     v = std::fabs(u) /
+                         (w.is_relativistic() ? std::sqrt(1 + squared / (c * c)) : 1),
+                     slowest = 2 * cells / (pi * w.dt) * std::asin(std::min(1.0, c * w.dt / cells));
+        warn(
+            warnings, v > slowest && of.charge != 0 && w.field.smoothing.passes < 4, "species '",
+            of.name, "' drifts with ", v / c,
+            " c, and the shortest waves of light on this mesh with ", slowest / c,
+            " c: it may feed them (numerical Cherenkov radiation); set field.smoothing_passes = 4");
+    };
+    for (const SpeciesCase& of : w.uniform.species) {
+        if (!w.is_uniform()) break;
+        warn_of_cherenkov(of, of.drift_x, w.grid.x.spacing());
+        warn_of_cherenkov(of, of.drift_z, w.grid.z.spacing());
+    }
     // In the outer half of the mesh a way per step is a whole number of these.
     const double digit = std::numeric_limits<ParticleReal>::epsilon() *
                          std::max(w.grid.x.length, w.grid.z.length) / 2;
