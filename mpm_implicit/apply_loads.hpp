@@ -8,13 +8,14 @@ namespace mpm_implicit {
 
 using namespace mpm;
 
-/// A rigid grain under force control: its velocity in this step is one more unknown V,
-///   m (V - V_old) = dt (F + push - c V)
+/// A rigid grain under force control: its velocity at t^n + theta dt is one more unknown V^theta,
+///   m (V^theta - V^0) = theta dt (F + push - c V^theta),  V^1 = V^0 + (V^theta - V^0)/theta
+/// so that at theta = 1/2 what pushes it works as much as its kinetic energy grows.
 struct ForceControl {
     std::size_t grain;
     bool along_x;
     double mass, damping, force;  // force: now
-    double velocity;              // V_old
+    double velocity;              // V^0
 };
 
 /// Loads in the step from t^n: the body force, and velocities of rigid grains.
@@ -35,6 +36,17 @@ inline BodyForce apply_loads(const Loads& loads, long step, double dt,
         if (!is.force_control_y) is.vy = vy, is.travel_y += dt * vy;
     }
     return body_force(loads, t);
+}
+
+/// Velocities at t^{n+1} of the grains under force control.
+/// in/out: rigid, with their velocities at t^n + theta dt
+inline void extrapolate_controlled(const std::vector<ForceControl>& force_controls, double theta,
+                                   std::vector<RigidMotion>& rigid) {
+    for (const ForceControl& control : force_controls) {
+        RigidMotion& is = rigid[control.grain];
+        double& V = control.along_x ? is.vx : is.vy;
+        V = control.velocity + (V - control.velocity) / theta;
+    }
 }
 
 }  // namespace mpm_implicit

@@ -115,7 +115,7 @@ class NodeSolver {
         prepare(scheme, body, dt, nodes);
         ControlledGrains controlled;
         for (const ForceControl& control : force_controls) {
-            controlled.diagonal.push_back(scheme.theta * (control.mass + dt * control.damping));
+            controlled.diagonal.push_back(control.mass + scheme.theta * dt * control.damping);
             controlled.V.push_back(control.velocity);
         }
         v_ = v_0_;
@@ -222,7 +222,7 @@ class NodeSolver {
         right_ = b_;
         controlled.b.clear();
         for (const ForceControl& control : force_controls)
-            controlled.b.push_back(theta * (control.mass * control.velocity + dt * control.force));
+            controlled.b.push_back(control.mass * control.velocity + theta * dt * control.force);
         add_friction(size_, set, right_, controlled.b);
     }
 

@@ -45,7 +45,7 @@ class NewtonSolver {
             F_of(x_, F_);
             step.updating = false;
             if (report.loops == 0)
-                unit = std::max({common::safe_norm(F_), common::safe_norm(x_), missing_,
+                unit = std::max({common::safe_norm(F_), common::safe_norm(x_), missing_, pressed_,
                                  std::numeric_limits<double>::min()});
             // What round-off of R leaves in F.
             const double tolerance =
@@ -62,11 +62,11 @@ class NewtonSolver {
             if (result.newton_iterations == 0) break;
         }
         if (!result.converged)
-            throw common::NumericalError(
-                "Newton's iteration did not converge: " + result.reason + "; residual " +
-                common::format(result.residual) + ", asked for " +
-                common::format(scheme.tolerance) + "; hardest pressed are " +
-                solver.set.hardest_pressed(state.assembly.grains) + ": " + solver.set.advice());
+            throw common::NumericalError("Newton's iteration did not converge: " + result.reason +
+                                         "; residual " + common::format(result.residual) +
+                                         ", asked for " + common::format(scheme.tolerance) + "; " +
+                                         solver.set.hardest_pressed(state.assembly.grains) +
+                                         solver.set.advice());
         return end(shape, step, state);
     }
 
@@ -105,7 +105,7 @@ class NewtonSolver {
         }
     }
 
-    // Puts v + R(v)/D on the nodes, for contact to correct.
+    // Puts v + R(v)/D on the nodes, for contact.
     template <class Shape>
     void add_missing_momentum(const Shape& shape, const Vector& x, Step& step) {
         GrainNodes& nodes = step.nodes;
@@ -153,19 +153,22 @@ class NewtonSolver {
     }
 
     // F(v) = v - C(v + R(v)/D), and of a grain under force control
-    // V - [V_old + (dt F + impulses/theta)/m]/(1 + dt c/m).
+    // V^theta - [V^0 + (theta dt F + impulses)/m]/(1 + theta dt c/m).
     template <class Shape>
     void residual(const Shape& shape, const Vector& x, Step& step, Vector& F) {
         GrainNodes& nodes = step.nodes;
         const std::vector<ForceControl>& controls = step.solver.force_controls;
         const long n = nodes.size();
         add_missing_momentum(shape, x, step);
+        const double theta_dt = step.scheme.theta * step.dt;
         if (step.updating) {
-            for_each_dof(n, [&](long i) {
+            for_each_dof(n, [&, &scale = step.scale()](long i) {
                 part_[i] = root_[i] * nodes.motion[i].vx_1 - x[i];
                 part_[n + i] = root_[n + i] * nodes.motion[i].vy_1 - x[n + i];
+                rest_[i] = scale[i] * theta_dt * nodes.force[i].x;
+                rest_[n + i] = scale[n + i] * theta_dt * nodes.force[i].y;
             });
-            missing_ = common::safe_norm(part_);
+            missing_ = common::safe_norm(part_), pressed_ = common::safe_norm(rest_);
         }
         std::array<std::vector<double>, common::block_count> impulses;
         for (auto& block : impulses) block.assign(controls.size(), 0.0);
@@ -184,13 +187,11 @@ class NewtonSolver {
             F[n + i] = x[n + i] - root_[n + i] * nodes.motion[i].vy_1;
         });
         for (std::size_t s = 0; s < controls.size(); ++s) {
-            const ForceControl& control = controls[s];
-            double impulse = step.dt * control.force;
-            for (const auto& block : impulses) impulse += block[s] / step.scheme.theta;
-            const double V = (control.velocity + impulse / control.mass) /
-                             (1 + step.dt * control.damping / control.mass);
-            const long at = 2 * n + static_cast<long>(s);
-            F[at] = x[at] - std::sqrt(control.mass) * V;
+            double impulse = theta_dt * controls[s].force;
+            for (const auto& block : impulses) impulse += block[s];
+            const double m = controls[s].mass, V = (controls[s].velocity + impulse / m) /
+                                                   (1 + theta_dt * controls[s].damping / m);
+            F[2 * n + long(s)] = x[2 * n + long(s)] - std::sqrt(m) * V;
         }
     }
 
@@ -240,7 +241,7 @@ class NewtonSolver {
     }
 
     Vector root_, x_, F_, v_, Mv_, part_, rest_;
-    double missing_ = 0;  // |D^{-1/2} R|: what impulses have to make up for, too
+    double missing_ = 0, pressed_ = 0;  // D^{-1/2} times R, and times theta dt f
     Constraints allowed_;
     CgWorkspace cg_;
     common::NewtonWorkspace newton_;

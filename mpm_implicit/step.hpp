@@ -86,6 +86,8 @@ void move_to_new_level(const Shape& shape, const BodyForce& body, double dt,
     move_particles(shape, grains, state.assembly.rigid, nodes, scratch.scheme.theta, scratch.flip,
                    body.damping, scratch.frozen, dt, particles, sums.tiles);  // grid -> particles
     // [/particles]
+    extrapolate_controlled(scratch.solver.force_controls, scratch.scheme.theta,
+                           state.assembly.rigid);
     state.layout.moved += scratch.frozen ? 0 : dt * sums.nodes.largest_speed;
     clock.lap("particles");
 }

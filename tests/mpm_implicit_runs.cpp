@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/support/any_mpm_run.hpp"
@@ -299,6 +300,47 @@ TEST_CASE("what plates hold keeps pressing or the run says that it does not" *
     check_theorem(rings);
     CHECK(rings.summary["results"]["held_force"]["verdict"] == "FAIL");
     CHECK(rings.value("held_force") < 0.1);
+}
+
+TEST_CASE("an elastic block slides on an elastic one without friction and keeps its velocity" *
+          doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string path = facts::folder_of_test() + "/slides.toml";
+    std::ofstream(path) << "grid = {cells_x = 80, cells_y = 16, length_x = 4}\n"
+                           "time.end = 1\nload = {gravity_y = -10, rise = 0.1}\n"
+                           "[material]\nA = {E = 1e6, density = 1000}\n"
+                           "B = {E = 1e6, density = 2000}\nplate.law = 'rigid'\n"
+                           "[pair]\nlow = {a = 'B', b = 'plate', friction = 1}\n"
+                           "[grain.B]\nshape = 'box'\nmaterial = 'B'\n"
+                           "x = 1.4\ny = 0.25\nwidth = 2.4\nheight = 0.2\n"
+                           "[grain.A]\nshape = 'box'\nmaterial = 'A'\nvelocity_x = 0.5\n"
+                           "x = 0.6\ny = 0.45\nwidth = 0.4\nheight = 0.2\n"
+                           "[grain.plate]\nshape = 'box'\nmaterial = 'plate'\n"
+                           "x = 2\ny = 0.075\nwidth = 4\nheight = 0.15\n";
+    const std::string stiff = "material.A.E=1e8 material.B.E=1e8 time.alpha=40 grid.low_y=-0.025";
+    for (const auto& [program, change, kept] :
+         {std::tuple("mpm_implicit", std::string("method.theta=1 time.alpha=4"), 0.007),
+          {"mpm_implicit", "method.theta=1 time.alpha=4 method.shape=gimp", 0.007},
+          {"mpm_implicit", "method.theta=1 " + stiff, 0.02},
+          {"mpm_explicit", "", 0.003}}) {
+        CAPTURE(program);
+        CAPTURE(change);
+        const Run r = facts::run_mpm(program, "slides", path + " " + change);
+        const auto& p = r.column("momentum_x_A");
+        CHECK(std::fabs(p.back() / p.front() - 1) <= kept);
+    }
+}
+
+TEST_CASE("Newton's method brings a block to rest on rollers" * doctest::description("physics")) {
+    const Run r = run("rollers", "standing_wave",
+                      "grid.cells_x=20 grid.cells_y=12 grid.length_x=1 boundary.x_low=open "
+                      "boundary.x_high=open boundary.y_high=open grain.body.profile=none "
+                      "grain.body.amplitude=0 grain.body.x=0.5 grain.body.y=0.2 "
+                      "grain.body.width=0.6 grain.body.height=0.4 material.default.E=1e5 "
+                      "load.gravity_y=-1 load.rise=2 method.theta=1 time.alpha=50 time.end=10 "
+                      "solver.kind=newton_krylov theory.compare=none");
+    check_theorem(r);
+    CHECK(r.column("kinetic").back() <= 1e-6 * r.column("elastic").back());
 }
 
 TEST_CASE("a column under its weight stays at rest or the run says that it does not" *

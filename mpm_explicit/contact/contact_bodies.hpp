@@ -24,7 +24,7 @@ class ContactBodies {
         }
         for (const Grain& grain : grains) {
             is_rigid_.push_back(grain.rigid);
-            material_.push_back(grain.material);
+            material_.push_back(grain.material), has_corners_.push_back(grain.has_corners);
         }
     }
 
@@ -61,7 +61,7 @@ class ContactBodies {
             if (!(sum.m > nodes.least_mass())) continue;
             const double per_m = 1 / sum.m;
             body.dof = member.dof, body.grain = member.grain, body.wall = false;
-            body.rigid = is_rigid_[member.grain];
+            body.rigid = is_rigid_[member.grain], body.has_corners = has_corners_[member.grain];
             body.m = sum.m, body.per_mx = body.per_my = body.rigid ? 0 : per_m;
             body.x = sum.mx * per_m - member.x, body.y = sum.my * per_m - member.y;
             body.gx = sum.gx, body.gy = sum.gy;
@@ -92,6 +92,8 @@ class ContactBodies {
     /// All pairs, those that are in contact, or only those that are bonded.
     void find_pairs(double h, const std::vector<Bond>& bonds, bool only_bonded, bool only_touching,
                     ContactStorage& storage, ContactNode& node) const {
+        const auto rigid_count = std::count_if(node.bodies.begin(), node.bodies.end(),
+                                               [](const ContactBody& body) { return body.rigid; });
         std::size_t count = 0;
         for (std::size_t b = 1; b < node.bodies.size(); ++b) {
             for (std::size_t a = 0; a < b; ++a) {
@@ -106,6 +108,9 @@ class ContactBodies {
                 ContactPair& pair = storage.pairs[count];
                 const double least = bond < 0 ? 1e-6 * h : 0;
                 if (!normal_between(one, two, least, pair.nx, pair.ny)) continue;
+                // Rigid bodies that abut are one, and their ends no surface.
+                if (rigid_count > 1 && !two.wall && !free)
+                    take_facing_side(one, two, pair.nx, pair.ny);
                 if (bond < 0 && only_touching && !touch(rule_, one, two, pair, h)) continue;
                 pair.a = a, pair.b = b, pair.bond = bond;
                 pair.links[0] = {static_cast<int>(a), static_cast<int>(b), 1}, pair.link_count = 1;
@@ -136,7 +141,7 @@ class ContactBodies {
     ContactRule rule_;
     long materials_;
     std::vector<std::vector<std::pair<int, int>>> bonds_of_;
-    std::vector<bool> is_rigid_;
+    std::vector<bool> is_rigid_, has_corners_;
     std::vector<int> material_;
 };
 

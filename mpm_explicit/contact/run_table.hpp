@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "mpm_explicit/contact/solve_contact_node.hpp"
+#include "mpm_explicit/contact/outline_normal.hpp"
 #include "mpm_explicit/grid/grain_nodes.hpp"
 
 namespace mpm {
@@ -25,8 +25,8 @@ inline bool has_outline(const ContactBody& body, double h) {
 /// from n.
 inline double gap_between(const ContactBody& one, const ContactBody& two, double nx, double ny,
                           double ahead, double most) {
-    // Between two that are free, the normal of a corner is a guess; beside a corner, a side along n
-    // has no place.
+    // Between two that are free, the normal of corner on corner is a guess; beside a corner, a side
+    // along n has no place.
     const bool free = !one.is_fixed() && !two.is_fixed();
     const auto place = [&](const ContactBody& body, double sign) {
         if (body.wall) return body.x * nx + body.y * ny;
@@ -45,29 +45,6 @@ inline double gap_between(const ContactBody& one, const ContactBody& two, double
     };
     const double parting = (two.vx_0 - one.vx_0) * nx + (two.vy_0 - one.vy_0) * ny;
     return place(two, -1) - place(one, 1) + std::clamp(ahead * parting, -most, most);
-}
-
-/// What the normal of two bodies is along, from one to two: the gradient of the fixed one where there
-/// is one, else between both.
-inline std::array<double, 2> gradient_between(const ContactBody& one, const ContactBody& two) {
-    return {(two.rigid ? 0 : one.gx) - (one.rigid ? 0 : two.gx),
-            (two.rigid ? 0 : one.gy) - (one.rigid ? 0 : two.gy)};
-}
-
-/// The normal from one to two: out of the fixed one where there is one, else between both gradients.
-/// in:     least size of a gradient that is not round-off, as it is within a plate
-/// out:    whether there is one
-inline bool normal_between(const ContactBody& one, const ContactBody& two, double least, double& nx,
-                           double& ny) {
-    if (two.wall) {
-        nx = two.grain == x_low ? -1 : two.grain == x_high ? 1 : 0;
-        ny = two.grain == y_low ? -1 : two.grain == y_high ? 1 : 0;
-        return true;
-    }
-    const std::array<double, 2> along = gradient_between(one, two);
-    const double size = std::sqrt(along[0] * along[0] + along[1] * along[1]);
-    nx = along[0] / size, ny = along[1] / size;
-    return size > least;
 }
 
 /// The two bodies that alone meet at a node, one of them fixed, and along which axis their surface is

@@ -37,6 +37,7 @@ struct ContactBody {
     double x, y;                   // center of the body's mass around the node, from the node
     double gx, gy;                 // sum_p V_p grad S_ip, out of the body
     SurfaceSums surface;           // its outline, with moments about the node
+    bool has_corners = false;      // the grain, somewhere
     int force_control = -1;        // theta scheme: the force control that moves a rigid grain ...
     bool control_along_x = false;  // ... and its direction; the velocity along it is an unknown
     bool is_fixed() const { return wall || rigid; }

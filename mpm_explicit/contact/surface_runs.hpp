@@ -32,8 +32,9 @@ class SurfaceRun {
         keys_[k] = node.key;
         if (!node.pairs.empty()) pair_ = node.pairs[0];
         if (!bodies_[at + 1].wall) {
-            const auto [x, y] = gradient_between(bodies_[at], bodies_[at + 1]);
-            gx_ += x, gy_ += y;
+            const auto area = area_between(bodies_[at], bodies_[at + 1]),
+                       gradient = gradient_between(bodies_[at], bodies_[at + 1]);
+            for (const std::size_t c : {0, 1}) area_[c] += area[c], gradient_[c] += gradient[c];
         }
         // Moments about the first node.
         const double away = static_cast<double>(nodes_++) * h,
@@ -59,9 +60,8 @@ class SurfaceRun {
     bool weigh() {
         if (empty()) return false;
         if (!bodies_[1].wall) {
-            const double size = std::hypot(gx_, gy_);
-            if (!(size > 0)) return false;
-            pair_.nx = gx_ / size, pair_.ny = gy_ / size;
+            if (gradient_ == std::array{0.0, 0.0}) return false;
+            along_area_or_gradient(area_, gradient_, pair_.nx, pair_.ny);
         }
         double sum = 0, heaviest = 0;
         for (std::size_t k = 0; k < links_; ++k) {
@@ -153,8 +153,8 @@ class SurfaceRun {
     std::array<long, ContactPair::max_links> keys_{};
     std::array<double, ContactPair::max_links> weight_{};
     std::array<bool, ContactPair::max_links> is_light_{}, may_pull_{};
-    std::array<ContactBody, 2> seen_;  // the two, with the surfaces that all nodes see
-    double gx_ = 0, gy_ = 0;
+    std::array<ContactBody, 2> seen_;            // the two, with the surfaces that all nodes see
+    std::array<double, 2> area_{}, gradient_{};  // that n is along
 };
 
 }  // namespace mpm

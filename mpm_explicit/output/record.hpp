@@ -121,9 +121,12 @@ class LeapfrogRecorder {
             put_in = std::max(put_in, energy[0] - drift + std::fabs(external[n]));
         }
         const std::string source = "of pairs that press, over the energy";
-        run.summary.hint(levels_ == 2
-                             ? "take less friction: where sweeps end early, pairs do not settle"
-                             : "take contact.levels = 2");
+        run.summary.hint(levels_ != 2    ? "take contact.levels = 2"
+                         : frictionless_ ? "where a grain is between two bodies that are told how "
+                                           "to move, sweeps end before its pairs settle: keep "
+                                           "plates that meet a grain a cell apart"
+                                         : "take less friction: where sweeps end early, pairs do "
+                                           "not settle");
         if (frictionless_ && levels_ == 2)
             run.summary.result_at_most("contact_works", works, "1", 1e-10, source + ": exact");
         else  // exact as well, but where sweeps end early (solve_contact_node.hpp)

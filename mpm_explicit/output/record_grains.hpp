@@ -64,6 +64,7 @@ class Recorder {
             sum.x += one.x, sum.y += one.y, sum.angular += one.angular;
         row.add("momentum_x", "momentum", sum.x);
         row.add("momentum_y", "momentum", sum.y);
+        // About the origin of the mesh, as those of the grains.
         row.add("angular_momentum", "momentum*length", sum.angular);
         row.add("contacts", "1", contacts);
         row.add("contact_force", "force", impulse / scales_.dt);
@@ -201,8 +202,9 @@ class Recorder {
                 whose + " has left the mesh",
                 [&](long p) { return outside(at.x_p[p], at.x_p[p], at.y_p[p], at.y_p[p]); },
                 when(step + 1) +
-                    ": widen the mesh, put a wall there, or reduce time.alpha if the grain has "
-                    "burst");
+                    (grain.rigid ? ": widen the mesh, or end its motion before that"
+                                 : ": widen the mesh, put a wall there, or reduce time.alpha if "
+                                   "the grain has burst"));
         }
     }
 

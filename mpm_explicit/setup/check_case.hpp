@@ -227,7 +227,7 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back("time.end = " + format(t) +
                            " is no whole number of steps of time.dt = " + format(scales.dt) +
                            ": the run ends at t = " + common::number_text(last));
-    if (scales.impact_speed > 0.05 * scales.sound_speed && scales.grains > 1)
+    if (scales.impact_speed > 0.05 * scales.sound_speed)
         warnings.push_back("|v|/c_p = " + format(scales.impact_speed / scales.sound_speed) +
                            " is above 0.05: an impact strains the grains by more than the small "
                            "strains of the material laws" +
@@ -316,8 +316,9 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back(
             "a disk has a radius of " + format(least) +
             " cells, below 12: where it rolls on a rigid surface it loses speed to vibration, at "
-            "U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8, "
-            "least with method.transfer = \"spin\", in mpm_implicit 1 to 6; a slow one loses a "
+            "U^2 = g R over eight radii 5 to 22 per cent with 4 cells and 4 to 10 with 8 (in "
+            "mpm_explicit, "
+            "least with method.transfer = \"spin\"), in mpm_implicit 1 to 6; a slow one loses a "
             "larger part");
     return warnings;
 }

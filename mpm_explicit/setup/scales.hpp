@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -17,7 +18,8 @@ namespace mpm {
 /// What follows from a case, in its own units.
 struct Scales {
     double sound_speed = 0, speed = 0;  // largest c_p, largest |v| of a grain
-    double impact_speed = 0;            // the same without a common velocity along a periodic x
+    double impact_speed = 0;            // half of the largest closing speed of grains, all of it at
+                                        // plates and walls
     double dt = 0, shortening = 1;      // of the step, by viscosity
     long steps = 0, particles = 0, grains = 0;
     double nodes = 0;     // of all grains, about
@@ -25,6 +27,46 @@ struct Scales {
     double bytes = 0;
     double least_mass = 0;  // of a node that takes part: round-off of the lightest particle's
 };
+
+/// The largest speed at which bodies beside each other approach along an axis: half of it between two grains, all of
+/// it between a grain and a plate or wall.
+inline double closing_speed(const Problem& problem, const std::vector<PlannedGrain>& plans,
+                            const std::vector<Material>& materials) {
+    struct Body {
+        double low, high, v;
+        bool fixed;
+    };
+    const Mesh mesh = problem.mesh();
+    double fastest = 0;
+    for (const bool along_x : {true, false}) {
+        std::vector<Body> bodies;
+        for (const PlannedGrain& plan : plans) {
+            const Bounds box = bounds(plan.outline);
+            const bool rigid = materials[plan.material].law == Law::rigid;
+            bodies.push_back(along_x ? Body{box.x_low, box.x_high, plan.from.velocity_x, rigid}
+                                     : Body{box.y_low, box.y_high, plan.from.velocity_y, rigid});
+        }
+        const double ends[] = {along_x ? mesh.x_low : mesh.y_low,
+                               along_x ? mesh.x_high() : mesh.y_high()};
+        for (const int side : {0, 1})
+            if (problem.walls[(along_x ? x_low : y_low) + side] != "open")
+                bodies.push_back({ends[side], ends[side], 0, true});
+        // Of those below a body the fastest, as they end one after the other.
+        std::vector<Body> by_end = bodies;
+        std::ranges::sort(by_end, {}, &Body::high);
+        std::ranges::sort(bodies, {}, &Body::low);
+        double fastest_of[] = {-HUGE_VAL, -HUGE_VAL};  // of grains, and of what is fixed
+        std::size_t below = 0;
+        for (const Body& body : bodies) {
+            for (; below < by_end.size() && by_end[below].high <= body.low + 1e-6 * mesh.h; ++below)
+                fastest_of[by_end[below].fixed] =
+                    std::max(fastest_of[by_end[below].fixed], by_end[below].v);
+            fastest = std::max(fastest, (body.fixed ? 1 : 0.5) * (fastest_of[0] - body.v));
+            if (!body.fixed) fastest = std::max(fastest, fastest_of[1] - body.v);
+        }
+    }
+    return fastest;
+}
 
 /// The scales of a case.
 ///   dt <= alpha h / (c_p + |v|), for an explicit scheme c_p times viscous_shortening(), and
@@ -39,11 +81,8 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
     const double side = mesh.h / double(problem.per_side);
     double lightest = 1e300, shortened = 0;
     s.thinnest = 1e300;
-    double slowest_x = 1e300, fastest_x = -1e300;
-    for (const PlannedGrain& plan : plans)
-        slowest_x = std::min(slowest_x, plan.from.velocity_x),
-        fastest_x = std::max(fastest_x, plan.from.velocity_x);
-    const double shared = mesh.periodic_x ? 0.5 * (slowest_x + fastest_x) : 0;
+    s.impact_speed = closing_speed(problem, plans, materials);
+    double own_speed = 0;
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         const GrainCase& from = plan.from;
@@ -54,8 +93,7 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
                            std::numbers::pi / from.period * std::hypot(from.swing_x, from.swing_y) +
                            fastest(plan.table);
         s.speed = std::max(s.speed, std::hypot(from.velocity_x, from.velocity_y) + own);
-        s.impact_speed =
-            std::max(s.impact_speed, std::hypot(from.velocity_x - shared, from.velocity_y) + own);
+        own_speed = std::max(own_speed, own);
         s.particles += std::lround(area(plan.outline) / (side * side));
         lightest = std::min(lightest, material.density * side * side);
         s.thinnest = std::min(s.thinnest, thinnest(plan.outline));
@@ -64,6 +102,7 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
             ((box.x_high - box.x_low) / mesh.h + 5) * ((box.y_high - box.y_low) / mesh.h + 5);
     }
     s.grains = long(plans.size());
+    if (s.grains > 1) s.impact_speed += own_speed;
     // Where a smooth shape ends, its weight falls as the square of its gradient.
     s.least_mass = (parameters.shape == "linear" ? 1e-12 : 1e-24) * lightest;
     const double longest = parameters.alpha * mesh.h / (shortened + s.speed);
@@ -142,8 +181,9 @@ inline std::string describe_scales(const Case& parameters, const Scales& scales,
                        (parameters.frozen ? ", frozen particles" : "") + scheme);
     line("grains", std::to_string(scales.grains) + ", the thinnest " +
                        format(scales.thinnest / mesh.h) + " cells");
-    line("particles", std::to_string(scales.particles) + ", " + std::to_string(problem.per_side) +
-                          " x " + std::to_string(problem.per_side) + " per cell");
+    line("particles", "about " + std::to_string(scales.particles) + ", " +
+                          std::to_string(problem.per_side) + " x " +
+                          std::to_string(problem.per_side) + " per cell");
     line("sound",
          "c_p = " + format(scales.sound_speed) + ", largest |v| = " + format(scales.speed));
     line("steps", std::to_string(scales.steps) + " of dt = " + format(scales.dt) +

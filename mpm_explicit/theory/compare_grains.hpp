@@ -94,11 +94,18 @@ inline void compare_incline(const FinishedRun& run,
         return summary.not_measured("acceleration",
                                     "it is measured from t = " + format(from) +
                                         " on, when gravity is there: raise time.end");
+    const bool is_round = run.planned.plans[run.planned.target()].outline.kind == OutlineKind::disk;
+    const std::string flutters = run.material().viscosity < 3e-3 && !is_round
+                                     ? "friction follows the pressure, which flutters where a "
+                                       "grain slides without viscosity: set "
+                                       "material.*.viscosity = 3e-3; or "
+                                     : "";
     summary.hint(
-        "friction follows the pressure, which flutters where a grain slides without "
-        "viscosity, and a round grain rolls on single nodes: set "
-        "material.*.viscosity = 3e-3, refine the mesh, and lower time.alpha = " +
-        format(run.parameters.alpha));
+        exact == 0
+            ? "what friction holds sways on its base while its weight comes on: raise load.rise, "
+              "load.damping or time.end"
+            : flutters + (is_round ? "a round grain rolls on single nodes: " : "") +
+                  "refine the mesh, or lower time.alpha = " + format(run.parameters.alpha));
     summary.result(
         "acceleration", measured, "acceleration", exact,
         exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
@@ -260,6 +267,7 @@ inline void need_pressed_disk(const PlannedCase& planned) {
     planned.refuse(planned.free_grains() != 1 || plates < 1 || plates > 16 ||
                        first.outline.kind != OutlineKind::disk || planned.is_rigid(first),
                    " needs a disk, first in the case, and rigid plates, at most 16");
+    planned.refuse_gravity();
 }
 
 /// Mean stress of the particles within a distance of the center of a grain.

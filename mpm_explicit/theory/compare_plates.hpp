@@ -36,6 +36,7 @@ inline bool is_confined(const PlannedCase& planned) {
 
 /// Needs an upright box between two rigid plates without friction, of which one moves along y.
 inline void need_press(const PlannedCase& planned) {
+    planned.refuse_gravity();
     const Problem& problem = planned.parameters.problem;
     const PlannedGrain& block = planned.plans[planned.target()];
     planned.refuse(planned.free_grains() != 1 || planned.plans.size() != 3 ||
@@ -94,9 +95,8 @@ inline Press press_of(const FinishedRun& run) {
 /// What a wrong stress on a plate is due to.
 inline constexpr const char* press_hint =
     "plates are exact on lines of nodes: move them by less than a hundredth of the block, over "
-    "many periods of its sound, with its surfaces on lines of nodes, and lower time.alpha; where "
-    "particles cross lines of nodes take method.shape = \"gimp\", in mpm_implicit with "
-    "method.theta = 0.6";
+    "many periods of its sound, with its surfaces on lines of nodes, and lower time.alpha; or take "
+    "method.shape = \"gimp\", in mpm_implicit with method.theta = 0.6";
 
 // ---- pressed slowly -----------------------------------------------------------------------------
 

@@ -82,6 +82,12 @@ struct PlannedCase {
                        ".viscosity = 0");
     }
 
+    /// errors: InputError for a case with gravity, where the theory is of bodies without weight
+    void refuse_gravity() const {
+        refuse(parameters.problem.gravity_x != 0 || parameters.problem.gravity_y != 0,
+               " is with bodies without weight: take out load.gravity_x and load.gravity_y");
+    }
+
     /// errors: InputError 'theory.compare = "..."' with the sentence, where it is impossible
     void refuse(bool impossible, const std::string& sentence) const {
         mpm::refuse(impossible, "theory.compare = \"" + parameters.compare + "\"" + sentence);

@@ -16,11 +16,11 @@ namespace mpm::theory {
 inline std::string overlap_hint(const FinishedRun& run, double overlap, double time) {
     const Case& w = run.parameters;
     // Steps so long pass in every run that was tried.
-    const double part = 0.25 / std::max(0.5, overlap);
+    const double part = 0.15 / std::max(0.5, overlap);
     char shorter[32];
     std::snprintf(shorter, sizeof shorter, "%.1g", part * (w.dt > 0 ? w.dt : w.alpha));
-    const std::string cure =
-        std::string("lower time.") + (w.dt > 0 ? "dt" : "alpha") + " to " + shorter;
+    const std::string cure = std::string("lower time.") + (w.dt > 0 ? "dt" : "alpha") + " to " +
+                             format(std::stod(shorter));
     const std::string deepest = ", deepest at t = " + format(time);
     std::string hint =
         "grains that come nearer by a good part of a cell in a step are in each other before a "
@@ -38,8 +38,8 @@ inline std::string overlap_hint(const FinishedRun& run, double overlap, double t
 
 /// Judges how deep any two grains have been in each other, in cells, in all rows of the history
 /// (output/overlap.hpp). Of sound runs the largest were 0.24 (all cases, at their steps), 0.37 (alpha = 4 to
-/// 16); a disk of 4 cells under a plate was 0.31 deep at alpha = 12, 0.57 at 16 and 1.96 at 24, and the
-/// plate of a pack did 0.98, 0.79 and 0.70 of its work at 0.27, 0.34 and 0.60. Half a cell is as far as
+/// 16); a disk of 4 cells under a plate was 0.43 deep at alpha = 12, 0.59 at 16 and 0.79 at 24, and the
+/// plate of a pack did 0.98, 0.79 and 0.70 of its work at 0.27, 0.35 and 0.60. Half a cell is as far as
 /// nodes on either side of a surface still see both bodies.
 inline void judge_overlap(const FinishedRun& run, common::Summary& summary) {
     if (!run.planned.scheme.implicit || run.all.grains.size() < 2) return;

@@ -88,10 +88,11 @@ class ActiveSet {
 
     /// The bodies of the pair that is pressed hardest, for a message.
     std::string hardest_pressed(const std::vector<Grain>& grains) const {
+        if (list.pairs.empty()) return "";
         const auto hardest = std::max_element(
             list.pairs.begin(), list.pairs.end(),
             [](const ContactPair& a, const ContactPair& b) { return a.lambda_n < b.lambda_n; });
-        return names(static_cast<std::size_t>(hardest - list.pairs.begin()), grains);
+        return "hardest pressed are " + names(hardest - list.pairs.begin(), grains) + ": ";
     }
 
     /// What to change where the iterations do not get there, for a message.
