@@ -1,4 +1,4 @@
-// Where the surfaces of two bodies are, their normal, and which nodes follow each other across a surface.
+// Where the surfaces of two bodies are, and which nodes follow each other across a surface.
 #pragma once
 
 #include <algorithm>
