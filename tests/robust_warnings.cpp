@@ -329,19 +329,23 @@ mpm_explicit rebound.toml material.default.viscosity=0.05
     shorter ones
 mpm_implicit rebound.toml material.default.viscosity=0.05 -> no warning
 mpm_explicit disks grain.left.velocity_x=0.3669
-    warning: |v|/c_p = 0.06363 is above 0.05: an impact strains the grains by more than the small
-    strains of the material laws
+    warning: grains meet with 0.06363 c_p (each of two with half of their closing speed), above
+    0.05: an impact strains the grains by more than the small strains of the material laws
 mpm_explicit disks grain.left.velocity_x=18
-    warning: |v|/c_p = 2.467 is above 0.05: an impact strains the grains by more than the small
-    strains of the material laws, and faster than sound a grain passes into what it hits
+    warning: grains meet with 2.467 c_p (each of two with half of their closing speed), above 0.05:
+    an impact strains the grains by more than the small strains of the material laws, and faster than sound a grain passes into what it hits
 mpm_explicit mesh end left grain.left.velocity_x=0.3669 -> no warning
 # What moves together, and a grain that meets a wall.
 grains rebound.toml grain.left.velocity_x=1.1 grain.right.velocity_x=0.9 boundary.x_high=open theory.compare=none -> no warning
 mpm_explicit mesh end left grain.left.velocity_x=0.3669 boundary.x_high=frictional
-    warning: |v|/c_p = 0.1 is above 0.05
+    warning: grains meet with 0.1 c_p
 mpm_explicit disks load.gravity_y=-2.25
     warning: g H/c_p^2 = 0.1003 is above 0.05: grains at the bottom are crushed by the weight of
     a full mesh; stiffen the material
+grains incline_block.toml theory.compare=none grain.plate.x=0.25 grain.plate.width=0.5 grain.right.shape=box \
+    grain.right.x=1.25 grain.right.y=0.075 grain.right.width=1.5 grain.right.height=0.15 grain.right.material=plate
+    warning: rigid grains 'plate' and 'right' abut at x = 0.5: what slides over the seam is stopped
+    or slowed by their ends; make one grain of them
 grains incline_block.toml theory.compare=none grain.block.shape=polygon grain.block.sides=8
     warning: a polygon has a side of 1.531 cells, below 6, beside an obtuse corner: nodes know its
     ends to half a cell, and standing on it, it topples at a slope that may be 65.33 per cent off;

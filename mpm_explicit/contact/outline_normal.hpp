@@ -31,7 +31,15 @@ inline void along_area_or_gradient(const std::array<double, 2>& area,
 struct SeenSides {
     using Area = std::array<double, 2>;
     std::array<Area, 2> areas{};
+    std::array<SideSums, 2> sums{};
     int count = 0;
+
+    /// Where side k is along n.
+    double place(int k, double nx, double ny) const {
+        const SideSums& s = sums[k];
+        return (nx * (s.xx * nx + s.xy * ny) + ny * (s.yx * nx + s.yy * ny)) /
+               (s.x * nx + s.y * ny);
+    }
 };
 inline SeenSides seen_sides(const ContactBody& body) {
     const auto& [a, b] = body.surface.sides;
@@ -39,8 +47,10 @@ inline SeenSides seen_sides(const ContactBody& body) {
                  cross = a.x * b.y - a.y * b.x;
     // Round-off of shape functions is no side.
     const bool both = std::min(a_2, b_2) > 1e-12 * std::max(a_2, b_2);
-    if (both && cross * cross > 0.03 * a_2 * b_2) return {{{{a.x, a.y}, {b.x, b.y}}}, 2};
-    return {{{{a.x + b.x, a.y + b.y}}}, a_2 + b_2 > 0 ? 1 : 0};
+    if (both && cross * cross > 0.03 * a_2 * b_2) return {{{{a.x, a.y}, {b.x, b.y}}}, {a, b}, 2};
+    SideSums sum = a;
+    sum += b;
+    return {{{{sum.x, sum.y}}}, {sum}, a_2 + b_2 > 0 ? 1 : 0};
 }
 
 /// The one side of a corner that the body's gradient is along; -1: none, or both.
@@ -56,28 +66,35 @@ inline int side_along_gradient(const ContactBody& body, const SeenSides& seen) {
     return count == 1 ? found : -1;
 }
 
-/// The sides of two bodies that face each other, by number; -1: none, or more than one pair of them.
+/// The sides of two bodies that face each other, by number; of two such pairs the one with the larger gap, where gaps
+/// are told, since bodies that are apart along one normal do not touch. -1: none, or two pairs alike.
 struct FacingSides {
     int of_one = -1, of_two = -1;
 };
-inline FacingSides facing_sides(const SeenSides& one, const SeenSides& two) {
+inline FacingSides facing_sides(const SeenSides& one, const SeenSides& two, bool by_gaps) {
     FacingSides found;
-    int count = 0;
+    double widest = 0;
     for (int i = 0; i < one.count; ++i) {
         for (int k = 0; k < two.count; ++k) {
             const SeenSides::Area &a = one.areas[i], &b = two.areas[k];
             const double against = -(a[0] * b[0] + a[1] * b[1]);
-            if (against > 0 &&
-                against * against > 0.5 * (a[0] * a[0] + a[1] * a[1]) * (b[0] * b[0] + b[1] * b[1]))
-                found = {i, k}, ++count;
+            if (!(against > 0 && against * against > 0.5 * (a[0] * a[0] + a[1] * a[1]) *
+                                                         (b[0] * b[0] + b[1] * b[1])))
+                continue;
+            const double x = a[0] - b[0], y = a[1] - b[1], size = std::sqrt(x * x + y * y),
+                         nx = x / size, ny = y / size,
+                         gap = two.place(k, nx, ny) - one.place(i, nx, ny);
+            const double alike = 1e-6 * (std::fabs(gap) + std::fabs(widest));
+            if (found.of_one >= 0 && (!by_gaps || std::fabs(gap - widest) <= alike)) return {};
+            if (found.of_one < 0 || gap > widest) found = {i, k}, widest = gap;
         }
     }
-    return count == 1 ? found : FacingSides{};
+    return found;
 }
 
 /// The area of the outline that the normal of two bodies is along, from one to two; zero: their gradients have to do.
-///   one is rigid:     its side; of a corner the side that its gradient is along, or that faces one of the
-///                     other body's corner, else the side of the other body, else both of its own
+///   one is rigid:     its side; of a corner the side that faces one of the other body's corner, or that
+///                     its gradient is along, else the side of the other body, else both of its own
 ///   both can strain:  the difference of their sides; at a corner of one the side of the other if that
 ///                     is straight, else as above; of two corners the sides that face each other. Two
 ///                     without any corner are curved, and have gradients.
@@ -91,12 +108,12 @@ inline SeenSides::Area area_between(const ContactBody& one, const ContactBody& t
     if (!fixed && !one.has_corners && !two.has_corners) return {0, 0};
     const SeenSides of_one = seen_sides(one), of_two = seen_sides(two);
     if (of_one.count == 0 || of_two.count == 0) return {0, 0};
-    const FacingSides facing = facing_sides(of_one, of_two);
+    const FacingSides facing = facing_sides(of_one, of_two, fixed);
     if (fixed || of_one.count != of_two.count) {
         const bool first = fixed ? one.rigid : of_one.count == 2;
         const SeenSides &by = first ? of_one : of_two, &other = first ? of_two : of_one;
-        int side = by.count == 1 ? 0 : side_along_gradient(first ? one : two, by);
-        if (side < 0 && other.count == 2) side = first ? facing.of_one : facing.of_two;
+        int side = by.count == 2 && other.count == 2 ? (first ? facing.of_one : facing.of_two) : -1;
+        if (side < 0) side = by.count == 1 ? 0 : side_along_gradient(first ? one : two, by);
         const Area none{0, 0}, &of_other = other.areas[0];
         const bool flat = other.count == 1 && (first ? two : one).has_corners;
         Area out = side >= 0 && fixed   ? by.areas[side]
