@@ -343,6 +343,8 @@ case.toml other.toml -> two case files, 'case.toml' and 'other.toml': give one (
 --refine 0 -> --refine takes a whole number from 1 to 10, not '0'
 --refine 11 -> --refine takes a whole number from 1 to 10, not '11'
 --threads 99999999999999999999 -> from 1 to 1024, not '99999999999999999999'
+--threads 1 case.toml --threads=2 -> --threads is given twice; keep one of them
+--out a --out b -> --out is given twice; keep one of them
 time.end -> time.end: there is no such file
 case.toml time.end = 0.1 -> two case files, 'case.toml' and 'time.end': give one (overrides are
 =0.1 -> command line: '=0.1': write section.key=value
