@@ -280,6 +280,30 @@ TEST_CASE("what cannot be measured says why") {
                "theory has no root"));
 }
 
+TEST_CASE("growth that is over within a period is not measured in what comes after it") {
+    // A logistic amplitude, and a wave that turns more slowly the larger it is.
+    const auto measured = [](double seed) {
+        std::vector<double> t;
+        std::vector<Complex> z;
+        double phase = 0;
+        for (int n = 0; n < 1200; ++n) {
+            const double amplitude = 1 / (1 + std::exp(-0.025 * n) / seed);
+            t.push_back(0.1 * n), z.push_back(amplitude * std::exp(Complex(0, -phase)));
+            phase += 0.1 * (0.5 - 0.2 * amplitude * amplitude);
+        }
+        return measure_mode(t, z,
+                            {.expected = both({0.5, 0.25}), .begin = 4, .below_maximum = 0.1});
+    };
+    // Half a period multiplies it by five, to more than a tenth of its maximum.
+    const MeasuredMode fast = measured(0.01);
+    CHECK(!fast.found);
+    CHECK(fast.over);
+    CHECK(fast.end <= 10);
+    CHECK(!measured(1e-4).high);
+    CHECK(measured(1e-4).found);
+    CHECK(measured(0.1).high);
+}
+
 TEST_CASE("of noise alone no mode is reported") {
     int found = 0;
     for (int seed = 0; seed < 40; ++seed) {

@@ -551,6 +551,41 @@ TEST_CASE("near a wave that grows and its twin that decays theory takes the one 
     CHECK(wave_of(w)->expect(w).without_mesh.omega.real() == about(fast).epsilon(1e-9));
 }
 
+TEST_CASE(
+    "theory finds what grows across a field without a frequency from a fraction of its growth") {
+    // Weibel's instability across a weak field and the mirror mode, by integrals of another's own.
+    Case w;
+    w.setup = "uniform", w.wave = "magnetized", w.component = "B_x";
+    w.grid = {{4, 0, 0.4, true}, {48, 0, 5, true}};
+    w.dt = 0.25, w.uniform.mode_x = 0, w.uniform.mode_z = 1, w.uniform.B_y = 0.02,
+    w.field.smoothing.passes = 0;
+    SpeciesCase electrons;
+    electrons.name = "electrons", electrons.charge = -1, electrons.mass = 1;
+    electrons.temperature_x = electrons.temperature_z = 1e-3, electrons.temperature_y = 0.05;
+    w.uniform.species = {electrons};
+    for (const double near : {0.001, 0.01}) {
+        CAPTURE(near);
+        w.near = near;
+        CHECK(wave_of(w)->expect(w).without_mesh.omega.imag() == about(0.1603).epsilon(2e-3));
+    }
+
+    w.component = "B_z", w.grid = {{32, 0, 31.416, true}, {32, 0, 18.138, true}};
+    w.dt = 0.5, w.uniform.mode_x = 1, w.uniform.B_y = 0, w.uniform.B_x = 0.05;
+    SpeciesCase ions;
+    ions.name = "ions", ions.charge = 1, ions.mass = 1;
+    ions.temperature_x = 0.0025, ions.temperature_y = ions.temperature_z = 0.01;
+    electrons.mass = 0.04;
+    electrons.temperature_x = electrons.temperature_y = electrons.temperature_z = 0.00125;
+    w.uniform.species = {ions, electrons};
+    for (const double near : {5e-4, 1e-3, 3e-3}) {
+        CAPTURE(near);
+        w.near = near;
+        const auto omega = wave_of(w)->expect(w).without_mesh.omega;
+        CHECK(std::fabs(omega.real()) <= 1e-9);
+        CHECK(omega.imag() == about(0.00793).epsilon(2e-3));
+    }
+}
+
 // The rate at which two hot beams of u = gamma v grow, each of half the density and T along and across, by the
 // integral over all u at omega = i rate: D = 1 + sum (1 + u_across^2)/gamma^3 / (rate + i k v)^2 = 0.
 double growth_of_hot_beams(double k, double drift, double T) {

@@ -349,7 +349,7 @@ std::vector<Complex> averaged(std::span<const Complex> z, Rows rows, long block)
 
 // The part of the record that tells most, and in how large blocks.
 Rows window_of(std::span<const double> times, std::span<const Complex> z, const ModeSearch& search,
-               const Wanted& wanted, long& block) {
+               const Wanted& wanted, long& block, bool& high) {
     const double dt = times[1] - times[0], slack = 1e-9 * dt;
     Rows rows;
     while (rows.begin < long(times.size()) && times[std::size_t(rows.begin)] < search.begin - slack)
@@ -370,10 +370,16 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         level *= search.below_maximum;
         long end = rows.begin;
         while (end < rows.end && size(end) < level) ++end;
-        // A record that begins above the level has another mode, and only search.end knows.
+        // A record that begins above the level, but for what its mode grows in half a period, has
+        // another mode, and only search.end knows.
         const bool turns = wanted.frequency > std::abs(wanted.growth);
-        const double half = turns ? pi / (wanted.frequency * dt) : 1;
-        if (largest(rows.begin, rows.begin + std::lround(half)) < level) rows.end = end;
+        const long half = turns ? std::lround(pi / (wanted.frequency * dt)) : 1;
+        double first = 0;
+        for (long n = 0; n < std::min(half, rows.count()); ++n)
+            first =
+                std::max(first, size(rows.begin + n) * std::exp(-wanted.growth * dt * double(n)));
+        high = first >= level;
+        if (!high) rows.end = end;
     }
     if (wanted.growth < 0 && rows.count() > 8) {
         std::vector<double> late;
@@ -417,13 +423,16 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (!(wanted.size > 0)) return cannot("theory has no root to look for");
 
     long block = 1;
-    const Rows rows = window_of(times, z, search, wanted, block);
+    const Rows rows = window_of(times, z, search, wanted, block, result.high);
     const double dt = times[1] - times[0];
     // From there to its maximum growth would have taken less than the rest of the run.
     const double ended = times[std::size_t(std::max(0L, rows.end - 1))],
                  left = search.end < times.back() ? HUGE_VAL : times.back() - ended;
     result.over = wanted.growth * left > -1.5 * std::log(search.below_maximum);
-    std::string cure = result.over ? "; growth is over then" : ": raise time.end";
+    std::string cure = result.over ? "; growth is over then"
+                       : result.high
+                           ? "; it begins with more than a tenth of its maximum: lower the seed"
+                           : ": raise time.end";
     if (wanted.growth < 0 && left > 0) cure = "; " + search.faded;
     if (rows.count() < 8 * block)
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +

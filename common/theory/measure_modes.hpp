@@ -60,7 +60,8 @@ struct MeasuredMode {
     double begin = 0, end = 0;                  // the window in time
     double share = 0;  // of the energy: of the mode and of the one that runs against it
     bool found = false;
-    bool over = false;   // what grows came to below_maximum so early that it has ended since
+    bool over = false;  // what grows came to below_maximum so early that it has ended since
+    bool high = false;  // what grows begins above below_maximum, so that its window has no such end
     std::string reason;  // "cannot be measured, because ..."; empty when found
     std::string window;  // in words: from when to when, and what else was seen
 

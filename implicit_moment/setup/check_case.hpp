@@ -53,7 +53,7 @@ struct Scales {
     double seconds = 0, of_mesh = 0;  // on one core; of these, what is done on the mesh
 };
 
-/// The scales of a case, with densities in the middle of a sheet.
+/// The scales of a case, with densities in the middle of a sheet, or of its background where that is denser.
 inline Scales scales_of(const Case& w) {
     Scales s;
     const auto add = [&](const std::string& name, double density, double charge, double mass,
@@ -73,8 +73,9 @@ inline Scales scales_of(const Case& w) {
         // A tail is F^2 times as dense at its end, and B is F times as strong.
         const double F = tail_of(h).F(0.5 * w.grid.x.length);
         s.B = std::hypot(F * sheet.B0, h.guide_field * sheet.B0);
-        add("ions", F * F, 1, 1, sheet.T_i);
-        add("electrons", F * F, -1, 1 / h.mass_ratio, sheet.T_e);
+        const double density = std::max(F * F, h.background);
+        add("ions", density, 1, 1, sheet.T_i);
+        add("electrons", density, -1, 1 / h.mass_ratio, sheet.T_e);
         for (SpeciesScales& k : s.species) {
             const double drift = k.name == "ions" ? sheet.u_i : sheet.u_e;
             k.beyond_c = part_beyond_c({0, drift, 0}, Eigen::Array3d::Constant(k.thermal_speed));
@@ -393,11 +394,13 @@ inline std::vector<std::string> closure_warnings(const Case& w, const Scales& sc
     if (w.is_along_current()) {
         for (const std::string& warning : sheet_warnings(w)) warnings.push_back(warning);
     }
-    const double across = w.is_uniform() ? 2 : harris_of(w).thickness / dz;
-    warn(warnings, across < 1, "the sheet has ", 2 * across,
-         " cells across its whole thickness, below 2, and is not resolved: raise grid.cells_z, or "
-         "lower ",
-         w.is_along_current() ? "current_sheet" : "grid", ".length_z");
+    const HarrisCase h = w.is_uniform() ? HarrisCase{} : harris_of(w);
+    const double across = h.thickness / tail_of(h).F(0.5 * w.grid.x.length) / dz;
+    warn(warnings, !w.is_uniform() && across < 1, "the sheet has ", 2 * across,
+         " cells across its whole thickness", w.is_tail() ? " at its thin end" : "",
+         ", below 2, and is not resolved: raise grid.cells_z, or lower ",
+         w.is_along_current() ? "current_sheet" : "grid", ".length_z",
+         w.is_tail() ? " or harris.normal_field" : "");
     for (const SpeciesScales& s : scales.species) {
         warn(warnings, s.Omega_c_dt > 2 * pi, s.name, ": Omega_c dt = ", s.Omega_c_dt,
              " is above 2 pi, gyration is not followed");

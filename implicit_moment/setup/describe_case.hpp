@@ -157,7 +157,8 @@ inline void describe_results(common::ParameterTable& table, Case& w) {
     table.choice("theory.component", w.component, {"E_x", "E_y", "E_z", "B_x", "B_y", "B_z"},
                  "whose seeded mode is followed");
     table.real("theory.near", w.near, "omega_pi", at_least(0),
-               "frequency near which the root is sought; 0: fastest growing");
+               "frequency near which the root is sought; 0: fastest growing (not of those that "
+               "need it)");
 
     table.group("output");
     table.real("output.fields_interval", w.fields_interval, "1/omega_pi", at_least(0),

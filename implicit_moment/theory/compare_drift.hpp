@@ -45,7 +45,8 @@ inline void compare_drift(const Case& w, const common::History& history, common:
                            "particles.relativistic = false"
                      : cause_in_scheme(w, false) +
                            "few particles per cell shift the frequencies: raise "
-                           "uniform.particles_per_cell");
+                           "uniform.particles_per_cell" +
+                           (w.loading == "random" ? ", or set plasma.loading = \"quiet\"" : ""));
     summary.result_at_most("mean_E_error", off / largest, "", 0.01, "exact for the scheme");
 
     double mass = 0, slowest = HUGE_VAL;  // of what has a charge

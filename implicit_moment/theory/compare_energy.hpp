@@ -236,8 +236,12 @@ inline void compare_energy(const Case& w, const common::History& history,
     const double heat = relativistic_heat(w);
     summary.hint(heat > 0 && w.harris.perturbation == 0 ? hot_sheet(heat)
                  : damps && !(drift.back() > 0)
-                     ? "field.theta above 0.5 damps fast waves and noise: set it to 0.5, or "
-                       "raise the number of particles"
+                     ? std::string("field.theta above 0.5 damps fast waves and noise: raise the "
+                                   "number of particles, or set it to 0.5") +
+                           (w.field.uses_mass_matrix()
+                                ? ""
+                                : " and field.response = \"mass_matrix\", for what moments predict "
+                                  "keeps no energy")
                      : (w.field.uses_mass_matrix() || w.leapfrog.chosen
                             ? ""
                             : "what moments predict keeps no energy: set field.response = "

@@ -49,7 +49,8 @@ inline double heat_without_gamma(const Case& w) {
 }
 
 /// Why a wave may differ from theory, and what to change.
-inline std::string likely_cause(const Case& w, const Theory& theory, bool grows, bool over) {
+inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
+                                const common::MeasuredMode& seen, double tolerance) {
     const double heat = heat_without_gamma(w);
     if (!theory.of_scheme && w.is_relativistic() && heat > 0.003)
         return "theory is without the Lorentz factor of this heat, and particles with thermal "
@@ -58,7 +59,9 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                " of their mass: set particles.relativistic = false, or lower the temperatures";
     const double damping =
         w.leapfrog.chosen ? 0 : 0.5 * (w.field.theta - 0.5) * std::norm(theory.omega) * w.dt;
-    if (!theory.of_scheme && damping > 1e-3 * std::abs(theory.omega))
+    const double counts =
+        grows ? 0.5 * tolerance * theory.omega.imag() : 1e-3 * std::abs(theory.omega);
+    if (!theory.of_scheme && damping > counts)
         return "field.theta = " + format(w.field.theta) + " damps by some " + format(damping) +
                ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
                "time.dt";
@@ -67,9 +70,11 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                                      "c feed light that the mesh slows down (numerical "
                                      "Cherenkov)"
                                    : "";
-    if (over)
-        return "growth is over before it tells enough: lower the seed, and where that is below the "
-               "noise raise the particles per cell" +
+    if (seen.over || seen.high)
+        return (seen.over ? std::string("growth is over before it tells enough")
+                          : "it begins with more than a tenth of its maximum, or with another "
+                            "mode that has as much") +
+               ": lower the seed, and where that is below the noise raise the particles per cell" +
                (std::abs(theory.omega) * w.dt > 0.1
                     ? std::string("; or lower time.dt, which changes it")
                     : "") +
@@ -115,7 +120,7 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     const common::MeasuredMode seen =
         common::measure_mode(times, history.complex_column("mode"), search);
     const std::string where = theory.source + "; measured " + seen.window;
-    summary.hint(likely_cause(w, theory, grows, seen.over));
+    summary.hint(likely_cause(w, theory, grows, seen, tolerance));
     const double apart = times.size() > 1 ? times[1] - times[0] : 0;
     const bool rare = frequency * apart >= pi;
     const auto report = [&](const std::string& name, common::Measured value) {

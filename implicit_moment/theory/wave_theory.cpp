@@ -330,7 +330,8 @@ void refuse_without_near(const Case& w, const std::string& wave) {
     }
     refuse(true, wave,
            " needs theory.near: without temperatures and drifts this plasma has waves at omega = ",
-           (found.empty() ? "none in theory.component" : found));
+           (found.empty() ? "none in theory.component" : found),
+           "; for what grows without a frequency give a tenth of its growth, or less");
 }
 
 // The Lorentz factor is not in what turns about B.
@@ -373,6 +374,9 @@ common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
     for (const double part : {1.0, 0.97, 1.03, 0.9, 1.1, 0.8, 1.25, 0.6, 1.6, 0.4, 0.2})
         for (const double damped : {0.0, 0.05, 0.3})
             guesses.push_back(frequency * common::Complex(part, -damped * part));
+    // What only grows may do so much faster than the frequency that is given.
+    for (double growth = 0.25; growth < 100; growth *= 2)
+        guesses.emplace_back(0, frequency * growth);
     constexpr int places = 240;
     double last = 0;
     for (int n = 0; n <= places; ++n) {
@@ -389,7 +393,8 @@ common::DispersionRoot nearest_root(const Dispersion& D, double frequency) {
             best.found ? apart(best.omega, frequency) - apart(root.omega, frequency) : HUGE_VAL;
         const bool faster = root.omega.imag() > best.omega.imag(),
                    better = lead > 1e-9 * frequency || (lead >= -1e-9 * frequency && faster);
-        if (root.found && root.omega.real() >= 0 && std::abs(root.omega) > 1e-6 * frequency &&
+        const double least = root.omega.real() == 0 ? 0.01 : 1e-6;
+        if (root.found && root.omega.real() >= 0 && std::abs(root.omega) > least * frequency &&
             better)
             best = root;
     };
