@@ -213,6 +213,66 @@ inline std::vector<std::string> unused_warnings(const Problem& problem,
     return warnings;
 }
 
+/// Warnings of friction that nodes do not hold as they should, as measured: of blocks that it holds on slopes of 38
+/// degrees and more, and of disks that slip beside surfaces at an angle to the mesh.
+inline std::vector<std::string> friction_warnings(const Problem& problem,
+                                                  const std::vector<Material>& materials,
+                                                  const std::vector<PlannedGrain>& plans) {
+    std::vector<std::string> warnings;
+    double most = std::max(problem.contact.friction, problem.contact.wall_friction);
+    for (const PairCase& pair : problem.pairs) most = std::max(most, pair.friction);
+    const bool pulled = problem.gravity_x != 0 || problem.gravity_y != 0;
+    const auto is_rigid = [&](const PlannedGrain& plan) {
+        return materials[plan.material].law == Law::rigid;
+    };
+    const auto is_disk = [&](const PlannedGrain& plan) {
+        return !is_rigid(plan) && plan.outline.kind == OutlineKind::disk;
+    };
+    double least = 0, thin = 0;  // viscosity that holds a block, the time in which sound crosses it
+    for (const PlannedGrain& plan : plans) {
+        const Material& material = materials[plan.material];
+        if (is_rigid(plan) || is_disk(plan)) continue;
+        const Bounds box = bounds(plan.outline);
+        thin = std::min(box.x_high - box.x_low, box.y_high - box.y_low) / sound_speed(material);
+        if (material.viscosity < 0.2 * thin) least = std::max(least, 0.3 * thin);
+    }
+    if (pulled && most > 0.85 && least > 0)
+        warnings.push_back(
+            "friction of " + format(most) +
+            ", above 0.85: a block that it holds on a slope flutters without viscosity and may "
+            "slide; set material.<name>.viscosity = " +
+            format(least) + (most > 1.5 ? ", which above 1.5 may not do" : ""));
+    const auto is_turned = [&](const PlannedGrain& plan) {
+        const std::vector<Point>& at = plan.outline.corners;
+        for (std::size_t k = 0; k < at.size() && is_rigid(plan); ++k) {
+            const Point &a = at[k], &b = at[(k + 1) % at.size()];
+            const double dx = std::fabs(b.x - a.x), dy = std::fabs(b.y - a.y);
+            if (std::min(dx, dy) > 0.01 * std::max(dx, dy)) return true;
+        }
+        return false;
+    };
+    const auto turned = std::ranges::find_if(plans, is_turned);
+    const bool has_surface =
+        std::ranges::any_of(plans, is_rigid) || problem.contact.wall_friction > 0;
+    if (!pulled || !(most > 0) || !has_surface || std::ranges::none_of(plans, is_disk))
+        return warnings;
+    const std::string little = "where it slips friction gives it too little spin, by a part of ";
+    if (turned != plans.end())
+        warnings.push_back(
+            "a disk beside rigid grain '" + turned->name +
+            "', with sides at an angle to the mesh: nodes hold it off its lowest "
+            "point, and " +
+            little +
+            "up to 0.07 (mpm_implicit 0.1) over the coefficient; put the sides along "
+            "the mesh and turn gravity, which leaves 0.01 where it is stiff");
+    else if (most < 0.3)
+        warnings.push_back("a disk on a rigid surface with friction of " + format(most) + ": " +
+                           little +
+                           "0.01 over the coefficient where it is stiff, and up to 0.05 "
+                           "where weight flattens it");
+    return warnings;
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
@@ -282,6 +342,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         warnings.push_back(warning);
     for (const std::string& warning : arrival_warnings(problem, materials, plans))
         warnings.push_back(warning);
+    for (const std::string& warning : friction_warnings(problem, materials, plans))
+        warnings.push_back(warning);
     // As measured: a block of 20 and 40 cells bears 8.5 and 4 per cent too much between two such plates; and of a
     // column of 8 and 16 cells below a plate that has sunk by less than a hundredth of a cell the last one does
     // not strain with gimp.
@@ -302,13 +364,31 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
             if (!is_rigid(b)) continue;
             const Bounds one = bounds(a.outline), two = bounds(b.outline);
             const auto meet = [&](double x, double y) { return std::fabs(x - y) < 0.1 * mesh.h; };
+            // Whether a side at this level ends there.
+            const auto ends = [&](const Outline& outline, bool x, double level, double there) {
+                const std::vector<Point>& at = outline.corners;
+                for (std::size_t k = 0; k < at.size(); ++k) {
+                    const Point &p = at[k], &q = at[(k + 1) % at.size()];
+                    if (meet(x ? p.y : p.x, level) && meet(x ? q.y : q.x, level) &&
+                        (meet(x ? p.x : p.y, there) || meet(x ? q.x : q.y, there)))
+                        return true;
+                }
+                return false;
+            };
+            const auto level = [&](bool x, double of_one, double of_two, double there) {
+                return meet(of_one, of_two) && ends(a.outline, x, of_one, there) &&
+                       ends(b.outline, x, of_two, there);
+            };
             // Weight presses on one side.
-            const bool along_x = meet(one.x_high, two.x_low) &&
-                                 ((problem.gravity_y <= 0 && meet(one.y_high, two.y_high)) ||
-                                  (problem.gravity_y >= 0 && meet(one.y_low, two.y_low))),
-                       along_y = meet(one.y_high, two.y_low) &&
-                                 ((problem.gravity_x <= 0 && meet(one.x_high, two.x_high)) ||
-                                  (problem.gravity_x >= 0 && meet(one.x_low, two.x_low)));
+            const bool
+                along_x =
+                    meet(one.x_high, two.x_low) &&
+                    ((problem.gravity_y <= 0 && level(true, one.y_high, two.y_high, one.x_high)) ||
+                     (problem.gravity_y >= 0 && level(true, one.y_low, two.y_low, one.x_high))),
+                along_y =
+                    meet(one.y_high, two.y_low) &&
+                    ((problem.gravity_x <= 0 && level(false, one.x_high, two.x_high, one.y_high)) ||
+                     (problem.gravity_x >= 0 && level(false, one.x_low, two.x_low, one.y_high)));
             if (along_x || along_y)
                 warnings.push_back(
                     "rigid grains '" + a.name + "' and '" + b.name + "' abut at " +

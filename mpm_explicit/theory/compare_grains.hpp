@@ -95,17 +95,19 @@ inline void compare_incline(const FinishedRun& run,
                                     "it is measured from t = " + format(from) +
                                         " on, when gravity is there: raise time.end");
     const bool is_round = run.planned.plans[run.planned.target()].outline.kind == OutlineKind::disk;
+    const double mu = friction_on_plate(run.planned);
     const std::string flutters = run.material().viscosity < 3e-3 && !is_round
                                      ? "friction follows the pressure, which flutters where a "
-                                       "grain slides without viscosity: set "
+                                       "grain slides, or friction above 0.85 holds it, without "
+                                       "viscosity: set "
                                        "material.*.viscosity = 3e-3; or "
                                      : "";
     summary.hint(
-        exact == 0
-            ? "what friction holds sways on its base while its weight comes on: raise load.rise, "
-              "load.damping or time.end"
-            : flutters + (is_round ? "a round grain rolls on single nodes: " : "") +
-                  "refine the mesh, or lower time.alpha = " + format(run.parameters.alpha));
+        exact == 0 ? (mu > 0.85 ? flutters : "") +
+                         "what friction holds sways on its base while its weight comes on: raise "
+                         "load.rise, load.damping or time.end"
+                   : flutters + (is_round ? "a round grain rolls on single nodes: " : "") +
+                         "refine the mesh, or lower time.alpha = " + format(run.parameters.alpha));
     summary.result(
         "acceleration", measured, "acceleration", exact,
         exact > 0 ? run.parameters.tolerance * exact : 0.01 * g * std::sin(angle),
@@ -219,6 +221,15 @@ inline void compare_rolling(const FinishedRun& run, common::Summary& summary) {
 /// What moves a grain that should rest.
 inline std::string rest_hint(const FinishedRun& run) {
     const Case& w = run.parameters;
+    const Outline& outline = run.planned.plans[run.planned.target()].outline;
+    const Mesh mesh = w.problem.mesh();
+    const double half_cells = 2 * (outline.x - mesh.x_low) / mesh.h,
+                 line = mesh.x_low + 0.5 * mesh.h * std::round(half_cells);
+    if (outline.kind == OutlineKind::disk && std::fabs(half_cells - std::round(half_cells)) > 1e-6)
+        return "nodes hold a disk beside its lowest point, and it rolls to where they are alike on "
+               "both sides: put its center at x = " +
+               format(line) + ", or set contact.friction = 0 and load.damping = " +
+               format(std::sqrt(-w.problem.gravity_y / outline.radius));
     if (run.planned.scheme.implicit)
         return "stress that is held turns into noise of the mesh where nothing damps what rings: "
                "set method.theta = 0.51, or material.<name>.viscosity = " +
