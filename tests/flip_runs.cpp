@@ -245,6 +245,48 @@ TEST_CASE("a shock tube on a train is the same for flip and not for pic" *
     }
 }
 
+// An inflow keeps its mass flux. A pipe that is drawn empty lets gas through at Mach 1, and a back
+// pressure near that of the inflow slower; what is faster than sound behind a slow inflow is no flow of a gas.
+TEST_CASE("gas that comes into a pipe slower than sound does not pass when it is faster behind" *
+          doctest::description("physics")) {
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string pipe = folder_of("pipe.toml");
+    std::ofstream(pipe) << "grid = {cells_x = 50, length_x = 1, length_z = 0.02}\ntime.end = 4\n"
+                           "boundary = {x_low = 'inflow', x_high = 'open'}\n"
+                           "inflow = {density = 1, pressure = 10, velocity_x = 0.5}\n"
+                           "particles = {per_cell_x = 16, per_cell_z = 1}\n"
+                           "region.gas = {density = 1, pressure = 10, velocity_x = 0.5}\n";
+    const std::string sonic =
+        " inflow.density=0.1461 inflow.pressure=1.222 inflow.velocity_x=3.422";
+    for (const char* program : {"flip", "pic"}) {
+        CAPTURE(program);
+        const auto run = [&](const std::string& overrides) {
+            return facts::run_into("fluid_pipe", program, pipe + overrides).summary;
+        };
+        const auto drawn = run("");
+        const auto& mach = drawn["results"]["mach_behind_x_low"];
+        CHECK(mach["verdict"] == "FAIL");
+        CHECK(mach["value"] >= 2);
+        const std::string hint = mach["hint"];
+        CHECK(hint.find("boundary.pressure_x_high = 10") != std::string::npos);
+        CHECK(hint.find("density = 0.1461, pressure = 1.222, velocity_x = 3.422") !=
+              std::string::npos);
+        // Both cures.
+        const auto held = run(" boundary.pressure_x_high=10"), choked = run(sonic);
+        CHECK(held["results"]["mach_behind_x_low"]["verdict"] == "PASS");
+        CHECK(std::fabs(facts::value(held, "mach_behind_x_low") / 0.1336 - 1) <= 0.05);
+        CHECK(held["warnings"].size() == drawn["warnings"].size());
+        CHECK(!choked["results"].contains("mach_behind_x_low"));
+    }
+    // What is in front of the inflow has its say, and the run says what comes of it.
+    const auto half = facts::run_into("fluid_pipe", "flip",
+                                      pipe + " boundary.pressure_x_high=5 flip.density=particles");
+    CHECK(half.summary["results"]["mach_behind_x_low"]["verdict"] == "PASS");
+    REQUIRE(half.summary["warnings"].size() == 1);
+    CHECK(half.summary["warnings"][0].get<std::string>().starts_with(
+        "the gas behind inflow.x_low has the pressure "));
+}
+
 TEST_CASE("cold gas at a wall is six times as dense behind the shock" *
           doctest::description("physics")) {
     for (const std::string program : {"pic", "flip"}) {

@@ -9,6 +9,7 @@
 
 #include "common/run/run.hpp"
 #include "common/run/sentence.hpp"
+#include "flip/output/judge_inflow.hpp"
 #include "flip/output/write_output.hpp"
 #include "flip/setup/scales.hpp"
 #include "flip/theory/comparisons.hpp"
@@ -96,6 +97,7 @@ class Recorder {
                                 run.path("profile.dat"), summary});
         if (comparison.compare != nullptr && !summary.has_verdict())
             summary.not_measured(comparison.name, "the run is too short for it: raise time.end");
+        if (history.rows() > 1) judge_inflows(parameters_, state.time, cells, summary);
         if (history.rows() > 1) judge_energy(history, summary);
         if (history.rows() > 1) judge_volume(history, summary);
         std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
