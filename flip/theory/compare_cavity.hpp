@@ -17,6 +17,7 @@ inline constexpr const char* cavity_table = "flip/data/ghia_re100.csv";
 inline void validate_cavity(const Case& parameters, const Refusal& refuse) {
     for (const BoundaryCase& end : parameters.boundaries)
         refuse(end.kind != "no_slip", " needs no_slip walls on all sides");
+    validate_no_force(parameters, refuse);
     const double U = parameters.boundaries[z_high].slide;
     refuse(!(U > 0), " needs a lid that moves: set boundary.slide_z_high above 0");
     for (const Side end : {x_low, x_high, z_low})

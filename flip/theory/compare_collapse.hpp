@@ -33,6 +33,7 @@ inline void validate_collapse(const Case& parameters, const Refusal& refuse) {
     for (const Side s : all_sides)
         refuse(!parameters.is(s, "slip"), " needs walls: set boundary.", side_names[s],
                " = \"slip\"");
+    validate_no_force(parameters, refuse);
     const double z = parameters.grid.z.low;
     for (const RegionCase& part : {r[1], r[2]})
         refuse(part.center_x != 0 || part.center_z != z, " needs the middle of liquid and cavity ",

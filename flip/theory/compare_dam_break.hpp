@@ -36,6 +36,8 @@ inline void validate_dam_break(const Case& parameters, const Refusal& refuse) {
     refuse(r.shape != "box", " needs a box of water as the last region");
     const WaterColumn water = water_of(parameters);
     refuse(!(water.gravity > 0), " needs gravity.z below 0, and it is ", parameters.gravity_z);
+    refuse(parameters.gravity_x != 0 || parameters.trap != 0,
+           " is for water that gravity.z alone pulls: take out gravity.x and gravity.trap");
     refuse(!parameters.is(x_low, "slip") || !parameters.is(z_low, "slip"),
            " needs a wall at x_low and a floor at z_low: set both to \"slip\"");
     const double gap = std::max(r.center_x - r.half_x - parameters.grid.x.low,

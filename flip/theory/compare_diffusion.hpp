@@ -11,6 +11,7 @@ namespace flip {
 /// Needs a Gaussian of energy in dust that flows over a periodic mesh in steps of one length.
 inline void validate_diffusion(const Case& parameters, const Refusal& refuse) {
     validate_flow(parameters, refuse, "gaussian");
+    validate_no_force(parameters, refuse);
     const RegionCase& r = region_with_flow(parameters, "gaussian");
     refuse(!parameters.grid.x.periodic, " needs periodic ends in x");
     refuse(parameters.dt == 0, " needs steps of one length: set time.dt");

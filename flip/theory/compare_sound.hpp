@@ -246,6 +246,7 @@ inline void validate_ringing(const Case& parameters, const Refusal& refuse) {
                !parameters.grid.x.periodic,
            " needs a single uniform region everywhere, and periodic ends in x");
     refuse(sound_speed_of(parameters, r) == 0, " needs a gas with sound");
+    validate_no_force(parameters, refuse);
     refuse(r.noise == 0, " needs a seed: give region.", r.name, ".noise");
 }
 
