@@ -278,6 +278,40 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          ": waves are damped");
 }
 
+// Waves on a free surface, or under light gas, that steps of implicit pressure make grow: the longest that
+// the mesh holds, of the depth that the fluid has when it lies level.
+//   omega^2 = g k tanh k h,   k = pi/length between walls, 2 pi/length around, 3.83/radius about an axis
+inline void warn_of_surface_waves(const Case& parameters, const Scales& scales,
+                                  std::vector<std::string>& out) {
+    const bool along_z = std::fabs(parameters.gravity_z) >= std::fabs(parameters.gravity_x);
+    const common::Axis &down = along_z ? parameters.grid.z : parameters.grid.x,
+                       &level = along_z ? parameters.grid.x : parameters.grid.z;
+    const double g = std::fabs(along_z ? parameters.gravity_z : parameters.gravity_x);
+    if (g == 0 || !parameters.implicit() || parameters.theta == 1 || !parameters.plane() ||
+        parameters.transfer == "pic" || down.periodic)
+        return;
+    double heaviest = 0, filled = 0;
+    for (const RegionScales& r : scales.regions) heaviest = std::max(heaviest, r.lightest);
+    for (const RegionScales& r : scales.regions)
+        if (r.lightest > 0.1 * heaviest) filled += r.particles;
+    filled /= double(parameters.grid.x.cells * parameters.grid.z.cells * parameters.per_cell_x *
+                     parameters.per_cell_z);
+    const double k = (parameters.grid.axisymmetric ? 3.8317
+                      : level.periodic             ? 2 * pi
+                                                   : pi) /
+                     level.length,
+                 omega = std::sqrt(g * k * std::tanh(k * filled * down.length)),
+                 once = std::log(
+                     theory::swinging_step(omega, parameters.theta, scales.dt).amplification),
+                 grown = once * parameters.end / scales.dt;
+    // A fluid that falls and comes to rest within a period is no wave.
+    warn(out, filled < 0.98 && omega * parameters.end > 2 * pi && grown > 0.05, "steps of ",
+         scales.dt, " with flip.theta = ", parameters.theta,
+         ", below 1, make waves on the surface grow, the longest of this mesh, with a period of ",
+         2 * pi / omega, ", by a factor of about ", std::exp(grown),
+         " until time.end: set flip.theta = 1, or time.dt = ", 0.05 / grown * scales.dt);
+}
+
 // Runs that are over before anything crosses a cell: sound, the flow or a wall that slides, a fluid
 // that falls, momentum that diffuses.
 inline void warn_of_idleness(const Case& parameters, const Scales& scales,
@@ -309,6 +343,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     detail::warn_of_regions(parameters, scales, program, warnings);
     detail::warn_of_inflow(parameters, warnings);
     detail::warn_of_speeds(parameters, scales, program, warnings);
+    if (program == "flip" && parameters.compare != "gravity_wave")
+        detail::warn_of_surface_waves(parameters, scales, warnings);
     const double on_mesh = parameters.compare == interface_comparison.name && !parameters.implicit()
                                ? interface_rate_by_mesh(parameters, program)
                                : 0;
