@@ -75,7 +75,10 @@ const std::vector<Mutation> fluids{
      "frequency_over_theory frequency_over_mesh amplitude_per_period"},
     {"flip", "cavity", "grid.cells_x=12 grid.cells_z=12 time.end=8 flip.transfer=pic",
      all_of_cavity},
-    {"flip", "sphere_hits_plate", "grid.cells_x=24 grid.cells_z=48 time.end=2", ""},
+    {"flip", "sphere_hits_plate",
+     "grid.cells_x=24 grid.cells_z=48 region.ball.velocity_z=-0.06 particles.per_cell_x=1 "
+     "particles.per_cell_z=1 viscosity.linear=0 viscosity.quadratic=0 time.end=20",
+     "kinetic_energy_left"},
     {"flip", "taylor_green", "time.end=0.02", ""},
     {"flip", "collapsing_cavity",
      "grid.cells_x=40 grid.cells_z=40 particles.per_cell_x=1 particles.per_cell_z=1 "
@@ -94,7 +97,8 @@ const std::vector<Mutation> fluids{
      "shock_radius"},
     {"pic", "noh", "grid.cells_x=48 grid.cells_z=48",
      "plateau_density_over_theory shock_radius_over_theory"},
-    {"pic", "sphere_hits_plate", "grid.cells_x=24 grid.cells_z=48 time.end=2", ""},
+    {"pic", "sphere_hits_plate", "grid.cells_x=24 grid.cells_z=48 region.ball.velocity_z=-0.06",
+     "kinetic_energy_left"},
 };
 
 const std::string at_once =

@@ -155,6 +155,20 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
          scales.mach, parameters.swirls() ? " beside its swirl" : "",
          ", below 0.05: cells feel a particle only when it enters them, and what classical PIC "
          "makes of such a flow is noise; take flip");
+    // As measured, of iron that hits aluminum with 4 to 64 particles in a cell, at Mach 0.2 to 0.6.
+    bool stiff = false, bare = true;
+    for (const RegionCase& r : parameters.regions) {
+        stiff = stiff || material_of(parameters, r).p_infinity > 0;
+        bare = bare && r.shape != "everywhere";
+    }
+    const double of_noise = 1.2 / (double(parameters.per_cell_x * parameters.per_cell_z) *
+                                   std::max(scales.mach * scales.mach, 1e-300));
+    warn(out, program == "pic" && stiff && bare && scales.mach > 0 && of_noise > 0.1,
+         "the flow has Mach ", scales.mach,
+         ", and particles that come and go make pressures in stiff bodies that add about ",
+         of_noise,
+         " of the kinetic energy of the start: take flip, a faster flow, or raise "
+         "particles.per_cell_x and per_cell_z");
     for (const RegionCase& wave : parameters.regions) {
         const double moved = particles_moved(parameters, wave);
         warn(out, program == "pic" && wave.flow == "wave" && moved < enough_moved,
