@@ -304,7 +304,21 @@ flip around theory.compare=wave sound
 pic around sound
     warning: the flow has Mach 0.01002, below 0.05
     warning: the wave of region.gas takes 0.2037 particles across a border of cells, below 2: cells
-    do not feel that density changes, and sound is too slow; raise its amplitude above 0.09817
+    do not feel that density changes, and sound has another speed; take flip, or
+    particles.per_cell_x = 64
+pic around sound region.gas.amplitude=1e-3
+    warning: the flow has Mach 0.0009999, below 0.05
+    warning: the wave of region.gas takes 0.02037 particles across a border of cells, below 2: cells
+    do not feel that density changes, and sound has another speed; take flip, or
+    particles.per_cell_x = 64 with region.gas.amplitude = 0.006136
+# Stiff bodies in a void.
+pic sphere_hits_plate.toml -> no warning
+pic sphere_hits_plate.toml region.ball.velocity_z=-0.2
+    warning: the flow has Mach 0.4348, and particles that come and go make pressures in stiff bodies
+    that add about 0.3968 of the kinetic energy of the start: take flip
+pic sphere_hits_plate.toml region.ball.velocity_z=-0.2 particles.per_cell_x=8 particles.per_cell_z=8
+    no warning
+flip sphere_hits_plate.toml region.ball.velocity_z=-0.2 -> no warning
 pic tube region.gas.velocity_x=0.5 flip.transfer=apic
     warning: flip.transfer = "apic" means nothing to pic, whose particles are mass alone
 pic tube region.gas.velocity_x=0.5 flip.mass=consistent

@@ -174,9 +174,8 @@ inline void warn_of_speeds(const Case& parameters, const Scales& scales, const s
         warn(out, program == "pic" && wave.flow == "wave" && moved < enough_moved,
              "the wave of region.", wave.name, " takes ", moved,
              " particles across a border of cells, below ", enough_moved,
-             ": cells do not feel that density changes, and sound is too slow; raise its amplitude "
-             "above ",
-             std::fabs(wave.amplitude) * enough_moved / moved, ", or particles.per_cell_x");
+             ": cells do not feel that density changes, and sound has another speed; ",
+             cure_of_pic(parameters, wave));
     }
     const double slower =
         parameters.compare == wave_comparison.name ? slowed_by_mesh(parameters, program) : 0;

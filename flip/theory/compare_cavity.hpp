@@ -123,7 +123,8 @@ inline void compare_cavity(const FinishedRun& run) {
     const auto times = run.history.column("time");
     run.hint("the table is of a steady flow on a fine mesh: after ", times.back() / turn,
              " turns of the vortex (3 are enough) raise time.end, else refine the mesh of ",
-             parameters.grid.x.cells, " cells, or take flip.transfer = \"apic\"");
+             parameters.grid.x.cells, " cells, or take ", run.flip_with(),
+             "flip.transfer = \"apic\"");
     run.summary.result_at_most("largest_u_difference", u_most, "lid speed",
                                parameters.theory_tolerance, source);
     run.summary.result_at_most("largest_v_difference", v_most, "lid speed",

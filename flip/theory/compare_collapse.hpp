@@ -99,8 +99,9 @@ inline void compare_collapse(const FinishedRun& run) {
                                 ", and theory closes it at t = ", end, ": raise time.end");
     run.hint(std::isnan(t) ? "the cavity is still open at the end, the time that is given; " : "",
              "the liquid ends where a cell is full, and the cavity is ", R / dx,
-             " cells wide: refine the mesh to 20, take flip.density = \"particles\", flip.pressure "
-             "= \"implicit\", flip.transfer = \"flip\", no viscosity, and a liquid with a large "
+             " cells wide: refine the mesh to 20, take ", run.flip_with(),
+             "flip.density = \"particles\", flip.pressure = \"implicit\", flip.transfer = "
+             "\"flip\", no viscosity, and a liquid with a large "
              "p_infinity");
     if (std::isnan(t)) t = times.back();
     run.summary.result("collapse_time", t, "time", end, tolerance,

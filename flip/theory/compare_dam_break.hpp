@@ -98,7 +98,8 @@ inline void compare_dam_break(const FinishedRun& run) {
     const std::string source = "Martin and Moyce 1952, column twice as high as wide";
     run.hint("the front is a wedge, thinner than a cell at its tip, and the column is ",
              water.width / run.parameters.grid.x.spacing(),
-             " cells wide: refine the mesh to 20, take flip.density = \"particles\", and keep "
+             " cells wide: refine the mesh to 20, take ", run.flip_with(),
+             "flip.density = \"particles\", and keep "
              "viscosity and pic's part of the transfer small");
     run.result("front_speed", (to - from) / (T2 - T1), "(g H)^1/2", (to - from) / (L2 - L1),
                source + "; from x = 2 a to 3.5 a");

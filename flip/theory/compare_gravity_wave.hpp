@@ -81,8 +81,12 @@ inline void compare_gravity_wave(const FinishedRun& run) {
                         : sentence("in the first period it was ", first,
                                    ", and the rest is what steps and particles made: lower "
                                    "time.end, raise particles.per_cell_x and per_cell_z",
-                                   w.transfer == "flip" ? ", take flip.transfer = \"xpic\"" : "",
-                                   w.implicit() && w.theta < 1 ? ", or flip.theta = 1" : "")));
+                                   run.program == "pic"   ? ", take flip"
+                                   : w.transfer == "flip" ? ", take flip.transfer = \"xpic\""
+                                                          : "",
+                                   run.program == "flip" && w.implicit() && w.theta < 1
+                                       ? ", or flip.theta = 1"
+                                       : "")));
     common::ModeSearch search{.expected = {omega, -omega}};
     search.periods = 1.5;
     const common::MeasuredMode seen = measure_between_steps(times, mode, search);
@@ -98,7 +102,8 @@ inline void compare_gravity_wave(const FinishedRun& run) {
     run.hint(
         "the wave has ", w.grid.x.cells / w.mode,
         " cells, and the fluids cannot slip within one, which costs most where their densities "
-        "are alike: refine the mesh, raise particles.per_cell_x and per_cell_z, and take "
+        "are alike: refine the mesh, raise particles.per_cell_x and per_cell_z, and take ",
+        run.flip_with(),
         "flip.transfer = \"xpic\" where particles make more noise than the wave; viscosity damps "
         "it");
     run.summary.result(names[0], {seen.frequency() / of_steps, seen.frequency_error() / of_steps},

@@ -177,8 +177,10 @@ inline void compare_inertial_wave(const FinishedRun& run) {
     run.hint(
         "the wave has ", w.grid.z.cells / w.mode,
         " cells in half a length: refine the mesh where that is below 16, lower its speed where "
-        "that is not small beside v_theta, set viscosity.linear = viscosity.quadratic = 0, take "
-        "flip.transfer = \"flip\" with flip.density = \"particles\", and raise time.end");
+        "that is not small beside v_theta, set viscosity.linear = viscosity.quadratic = 0, take ",
+        run.flip_with(),
+        "flip.transfer = \"flip\" and flip.density = \"particles\", and raise "
+        "time.end");
     const auto times = run.history.column("time"), mode = run.history.column("mode");
     if (times.size() < 9)
         return run.not_measured(grows ? "growth_over_theory" : "frequency_over_theory",

@@ -278,7 +278,7 @@ inline void compare_interface(const FinishedRun& run) {
     run.info("incompressible_growth", theory::interface_growth(layers_of(w), k), "1/time",
              "of fluids whose sound is much faster");
     std::string slowed_by = "viscosity slows it, too";
-    if (w.density == "cells")
+    if (run.program == "flip" && w.density == "cells")
         slowed_by +=
             ", and flip.density = \"cells\" rings, which tears the interface: take "
             "\"particles\"";

@@ -53,7 +53,8 @@ inline void compare_rest(const FinishedRun& run) {
     const bool falls = weight > 0;
     run.hint(
         "something is out of balance: begin with pressures that balance across interfaces, put "
-        "them between cells, and take flip.density = \"particles\" for liquids",
+        "them between cells, and take ",
+        run.flip_with(), "flip.density = \"particles\" for liquids",
         parameters.loading == "random" ? "; particles.loading = \"random\" puts more of them into "
                                          "some cells than into others: "
                                          "take \"lattice\""

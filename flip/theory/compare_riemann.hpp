@@ -168,6 +168,29 @@ inline double allowed_beside_fan(double n) { return 1.5 * 0.042 / std::sqrt(n); 
 /// times what is allowed to its L1 error.
 inline constexpr double allowed_shift = 2, allowed_fan_shift = 1.5;
 
+/// What to do where the contact lies in its cell: as measured, beside a liquid of a thousand times its
+/// impedance a gas is 14 per cent too fast where that is the border of a cell, and 3 too slow in the middle.
+/// in:     way, of the contact
+/// out:    empty where it lies well, or has crossed cells
+inline std::string hint_on_contact(const FinishedRun& run, const theory::RiemannSolution& exact,
+                                   double way) {
+    const auto impedance = [](const theory::GasState& s) {
+        return s.density * theory::sound_speed(s);
+    };
+    const common::Axis& axis = run.parameters.grid.x;
+    const double left = impedance(exact.left), right = impedance(exact.right),
+                 ratio = std::max(left, right) / std::max(std::min(left, right), 1e-300),
+                 dx = axis.spacing(), in_cells = (run.parameters.interface - axis.low) / dx,
+                 off = std::fabs(in_cells - std::floor(in_cells) - 0.5);
+    if (run.program != "flip" || exact.has_void || ratio < 100 || std::fabs(way) > dx || off < 0.2)
+        return "";
+    return sentence(
+        "the contact has moved ", way / dx, " cells; as long as that is below 1 the ",
+        "velocity of the lighter fluid depends on where it is in its cell, whatever ",
+        "the mesh: put it in the middle, setup.interface = ", axis.at(std::floor(in_cells) + 0.5),
+        "; if that is not all, keep flip.transfer ", "= \"flip\" and flip.mass = \"lumped\"");
+}
+
 /// Density, velocity and pressure against the exact solution, on each side of the contact by the
 /// scales of that side, and where the waves are.
 ///   L1(q) = dx/swept sum_i |q_i - mean of the exact q over cell i| / largest q of that side
@@ -243,10 +266,10 @@ inline void compare_riemann(const FinishedRun& run) {
         advice +=
             ", or flip with flip.density = \"particles\": a liquid under tension needs particles "
             "that carry their volume";
-    run.hint(cells_swept, ": below 15 raise time.end or refine the mesh; else take ", advice,
-             parameters.viscosity > 0
-                 ? "; flip.viscosity smears the waves, and theory has none: take it out"
-                 : "");
+    const std::string usual =
+        sentence(cells_swept, ": below 15 raise time.end or refine the mesh; else take ", advice,
+                 hint_on_viscosity(parameters));
+    run.hint(usual);
     const auto judge_L1 = [&](const std::string& name, double value, double allowed,
                               const std::string& what) {
         if (allowed < 0.5) return run.summary.result("L1_" + name, value, "", 0, allowed, what);
@@ -288,9 +311,13 @@ inline void compare_riemann(const FinishedRun& run) {
                  length = parameters.grid.x.length;
     judge_L1("density", L1_rho / (density * length), 1e-3 + allowed_rho * dx / (density * length),
              "whole mesh; relative to the larger density");
+    if (const std::string contact_lies = hint_on_contact(run, exact, contact * t);
+        !contact_lies.empty())
+        run.hint(contact_lies);
     if (speed > 0)
         judge_L1("velocity_over_jump", L1_u / (speed * swept),
                  1e-3 + allowed_u * dx / (speed * swept), "relative to the changes of velocity");
+    run.hint(usual);
     run.info("L1_velocity", L1_u / length, "velocity", source + "; mean over the mesh");
 
     // The gases keep apart where their particles do.

@@ -135,12 +135,15 @@ inline void compare_sedov(const FinishedRun& run) {
     const double dx = run.parameters.grid.x.spacing();
     const double hot = hot_region(run.parameters).radius / dx, come = R / dx;
     const bool near = come < std::max(40.0, 10 * hot), flips = run.program == "flip";
+    const std::string& transfer = run.parameters.transfer;
     run.hint(
+        flips && transfer == "pic" ? "flip.transfer = \"pic\" smears the blast: take \"flip\"; "
+                                   : "",
         "the energy starts in ", hot, " cells, and the shock has come ", come, " cells: ",
         near ? "refine the mesh or raise time.end until that is 40 and ten times the first; keep "
              : "refine the mesh; keep ",
         flips ? "flip.density = \"cells\" and " : "",
-        "viscosity.linear = 0.5, viscosity.quadratic = 1");
+        "viscosity.linear = 0.5, viscosity.quadratic = 1", hint_on_viscosity(run.parameters));
     run.result("shock_radius", run.history.column("shock_radius").back(), "length",
                blast.radius(run.history.column("time").back()),
                "Sedov's similarity solution; outer half height of the density");

@@ -101,7 +101,7 @@ inline void compare_wall_shock(const FinishedRun& run) {
     run.hint("the shock has come ", R / dx,
              " cells, of which the first six are the wall's heat and four are its width: below 40 "
              "raise time.end or refine the mesh",
-             advice.empty() ? "" : "; else take " + advice);
+             advice.empty() ? "" : "; else take " + advice, hint_on_viscosity(parameters));
     const FromWall profile = from_wall(parameters, run.cells);
     const double from = std::max(0.2 * R, 6 * dx), to = R - std::max(0.15 * R, 5 * dx);
     double count = 0, sum = 0, squares = 0;

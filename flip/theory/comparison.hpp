@@ -48,6 +48,8 @@ struct FinishedRun {
     void hint(const Part&... parts) const {
         summary.hint(sentence(parts...));
     }
+    /// What stands before parameters that only flip has, in advice to take them.
+    const char* flip_with() const { return program == "pic" ? "flip with " : ""; }
     /// What could not be measured, why, and what to change.
     template <class... Part>
     void not_measured(const std::string& name, const Part&... parts) const {
@@ -148,6 +150,13 @@ inline std::string advice_on_viscosity(const Case& parameters) {
     return sentence("viscosity.linear = ", usual.q_linear,
                     " and viscosity.quadratic = ", usual.q_quadratic, ", which are ",
                     parameters.q_linear, " and ", parameters.q_quadratic);
+}
+
+/// What to do about a viscosity of the fluid where theory has none.
+inline const char* hint_on_viscosity(const Case& parameters) {
+    return parameters.viscosity > 0
+               ? "; flip.viscosity smears the waves, and theory has none: take it out"
+               : "";
 }
 
 }  // namespace flip
