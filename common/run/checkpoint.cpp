@@ -12,6 +12,8 @@
 #define XXH_INLINE_ALL 1
 #include <xxhash.h>
 
+#include "common/run/sentence.hpp"
+
 namespace common {
 
 namespace {
@@ -67,10 +69,7 @@ void CheckpointWriter::finish() {
     const std::string folder = std::filesystem::path(path_).parent_path().string();
     const int directory =
         open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (directory >= 0) {
-        fsync(directory);
-        close(directory);
-    }
+    if (directory >= 0) fsync(directory), close(directory);
 }
 
 CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& path) : path_(path) {
@@ -85,22 +84,16 @@ CheckpointReader::CheckpointReader(const ProgramInfo& info, const std::string& p
 
     char found[8] = {};
     if (left_ >= 8) read(found, 8);
-    if (std::memcmp(found, "PICSTATE", 8) == 0) {
-        throw InputError(path +
-                         ": was written by an earlier version of the program; continue it with the "
-                         "program that wrote it");
-    }
-    if (std::memcmp(found, magic, 8) != 0) throw InputError(path + ": is not a checkpoint");
+    const std::string cure = "; continue it with the program that wrote it";
+    common::refuse(std::memcmp(found, "PICSTATE", 8) == 0, path,
+                   ": was written by an earlier version of the program", cure);
+    common::refuse(std::memcmp(found, magic, 8) != 0, path, ": is not a checkpoint");
     blocks_ = verify();
     const std::string program = text("program"), version = text("version");
-    if (program != info.program) {
-        throw InputError(path + ": is a checkpoint of '" + program + "', not of '" + info.program +
-                         "'");
-    }
-    if (version != info.version) {
-        throw InputError(path + ": was written by version " + version + ", and this is " +
-                         info.version + "; continue it with the program that wrote it");
-    }
+    common::refuse(program != info.program, path, ": is a checkpoint of '", program, "', not of '",
+                   info.program, "'");
+    common::refuse(version != info.version, path, ": was written by version ", version,
+                   ", and this is ", info.version, cure);
     case_name_ = text("case_name");
     effective_case_ = text("case");
 }

@@ -104,10 +104,7 @@ std::string format(double value) {
 
 void ParameterTable::add(Entry entry) {
     entry.initial = std::visit(Shown{}, entry.target);
-    if (pattern_ != nullptr) {
-        pattern_->push_back(std::move(entry));
-        return;
-    }
+    if (pattern_ != nullptr) return pattern_->push_back(std::move(entry));
     if (groups_.empty()) group("parameters");
     groups_.back().entries.push_back(entries_.size());
     entries_.push_back(std::move(entry));

@@ -394,19 +394,12 @@ int Run::fail(int status, const std::string& message) {
 }
 
 void refuse_before_start(const CommandLine& command, long steps, double bytes) {
-    if (command.restart_step > steps) {
-        throw InputError(command.restart_path + ": is at step " +
-                         std::to_string(command.restart_step) + ", and the run ends at step " +
-                         std::to_string(steps) + ": raise time.end");
-    }
+    refuse(command.restart_step > steps, command.restart_path, ": is at step ",
+           command.restart_step, ", and the run ends at step ", steps, ": raise time.end");
     // Ranks of one machine share its memory, and each has its own limit of the shell.
     const double there = memory_limit_bytes(ranks_here());
-    if (bytes > there) {
-        char sizes[80];
-        std::snprintf(sizes, sizeof sizes, "the case needs %.3g GiB of memory, and there is %.3g",
-                      bytes / 1073741824, there / 1073741824);
-        throw InputError(std::string(sizes) + ": use fewer particles or cells");
-    }
+    refuse(bytes > there, "the case needs ", bytes / 1073741824, " GiB of memory, and there is ",
+           there / 1073741824, ": use fewer particles or cells");
 }
 
 int run_and_report_errors(const ProgramInfo& info, char** argv,

@@ -359,9 +359,11 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         ++rows.end;
     const bool grows = wanted.growth > 0 && search.below_maximum < 1;
     const auto size = [&](long n) { return std::abs(z[std::size_t(n)]); };
-    const auto largest = [&](long begin, long end) {
+    // But for what grows on the way.
+    const auto largest = [&](long begin, long end, double growth = 0) {
         double most = 0;
-        for (long n = begin; n < std::min(end, rows.end); ++n) most = std::max(most, size(n));
+        for (long n = begin; n < std::min(end, rows.end); ++n)
+            most = std::max(most, size(n) * std::exp(-growth * dt * double(n - begin)));
         return most;
     };
     if (grows && rows.count() > 0) {
@@ -370,15 +372,10 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         level *= search.below_maximum;
         long end = rows.begin;
         while (end < rows.end && size(end) < level) ++end;
-        // A record that begins above the level, but for what its mode grows in half a period, has
-        // another mode, and only search.end knows.
+        // A record that begins above the level has another mode, and only search.end knows.
         const bool turns = wanted.frequency > std::abs(wanted.growth);
-        const long half = turns ? std::lround(pi / (wanted.frequency * dt)) : 1;
-        double first = 0;
-        for (long n = 0; n < std::min(half, rows.count()); ++n)
-            first =
-                std::max(first, size(rows.begin + n) * std::exp(-wanted.growth * dt * double(n)));
-        high = first >= level;
+        const double half = turns ? pi / (wanted.frequency * dt) : 1;
+        high = largest(rows.begin, rows.begin + std::lround(half), wanted.growth) >= level;
         if (!high) rows.end = end;
     }
     if (wanted.growth < 0 && rows.count() > 8) {
