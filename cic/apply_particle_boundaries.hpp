@@ -30,8 +30,8 @@ struct ParticleBoundaries {
     bool plane = false, magnetized = false;  // for the components of new particles
 };
 
-/// No particle is emitted faster than this times its thermal speed: the largest value of
-/// (-2 log u)^1/2 for the random numbers u.
+/// No particle is emitted faster than this times its thermal speed: (-2 log u)^1/2 is at most 8.65 for
+/// the random numbers u.
 inline constexpr double fastest_emitted = 8.7;
 
 namespace detail {
@@ -194,8 +194,8 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
 /// in:     step, for the numbers of the emission
 /// in/out: species, all particles on the mesh afterwards; walls, the charges of floating ones;
 ///         emitted_again, how many of each species the source has sent back
-/// exact:  the charge of particles and walls together changes by what a source emits, and that is
-///         counted on the source wall
+/// exact:  the charge of particles and walls together stays, but for what grounded walls absorb: a source
+///         takes what it emits from its wall
 /// note:   A reflected particle keeps the leapfrog centered: its mirror image would have moved so.
 /// errors: NumericalError when a particle leaps over the whole box, or when they are too many
 inline void apply_particle_boundaries(const Grid& grid, const ParticleBoundaries& conditions,

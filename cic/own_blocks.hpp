@@ -21,8 +21,8 @@ inline int first_block(int of_rank) { return common::block_count * of_rank / com
 inline long begin_of_rank(long count, int of_rank) {
     return count * first_block(of_rank) / common::block_count;
 }
-/// Calls work(block, begin, end) for each block of a list that this rank has; it has these alone,
-/// and counts from 0 what it has. in: count, of all ranks
+/// Calls work(block, begin, end) for each block that this rank has; begin and end count from its own first
+/// particle, since it stores no others. in: count, of all ranks
 template <class Work>
 void for_each_own_block(long count, const Work& work) {
     const auto first = [&](long block) { return count * block / common::block_count; };

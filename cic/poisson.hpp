@@ -82,7 +82,7 @@ class PoissonSolver {
     }
 
     /// Solves for one charge density.
-    /// in:     rho on the nodes, ghosts filled; walls
+    /// in:     rho on the nodes, on walls per volume of the half cell; walls
     /// out:    phi on the nodes, interior only
     /// exact:  the difference equation holds to round-off. Without walls the mean of rho is taken
     ///         out, and phi has no mean.

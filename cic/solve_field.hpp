@@ -108,7 +108,7 @@ inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
 
 /// The field of the charge density.
 ///   div E = rho,  E = -grad phi:   -lap phi = rho
-/// in:     rho_g on nodes, ghosts filled; field.walls with the potentials of grounded walls and the
+/// in:     rho_g on nodes, on walls per half cell; field.walls with the potentials of grounded walls and the
 ///         charges of floating ones
 /// out:    field.phi; field.E_g, on nodes (momentum-conserving) or on edges (energy-conserving);
 ///         field.walls with the charges of grounded walls and the potentials of floating ones

@@ -29,13 +29,13 @@ struct NewtonResult {
 
 struct NewtonOptions {
     int restart = 30;                // largest Krylov space
-    double size_of_x = 1.0;          // |x| below which it counts as zero in the difference step h
+    double size_of_x = 1.0;          // |x| counts as at least this in the difference step h
     double first_forcing = 0.1;      // eta of the first step
     double largest_forcing = 0.9;    // bounds of eta; below the lower one the error of the
     double smallest_forcing = 1e-5;  // differences would show
     int max_halvings = 12;           // times that the line search shortens a step
-    // F is the gradient of something convex, or nearly so, and may have kinks: a step s is shortened
-    // where it overshoots, s.F(x + s) > 0, even if |F| falls, and taken where it does not.
+    // F is the gradient of something convex, or nearly so, and may have kinks: a step s is shortened where
+    // s.F(x + s) > |s.F(x)|/2, even if |F| falls, unless it falls to a tenth; else it is taken.
     bool convex = false;
 };
 
@@ -49,7 +49,7 @@ namespace newton_detail {
 
 /// The forcing term of the next linear system, second choice of Eisenstat and Walker.
 ///   eta = 0.9 (|F_k| / |F_k-1|)^2, not below 0.9 eta_k-1^2 while that exceeds 0.1,
-///   and not more accurate than half of what is left to do
+///   and not below half of goal/|F_k|, which reaches the tolerance
 inline double forcing(double eta_before, double size, double size_before, double goal,
                       const NewtonOptions& options) {
     const double ratio = size / size_before;

@@ -1,5 +1,5 @@
-// Parallel loops whose result does not depend on the number of threads. All OpenMP of the project
-// lives here.
+// Parallel loops whose result does not depend on the number of threads. All threads of the project
+// start here.
 //
 // Work is cut into pieces that are fixed by the problem alone. Threads choose which piece they
 // take, never how the pieces are cut or in which order partial sums are added; so one thread

@@ -63,7 +63,7 @@ inline int end_ranks(
     return has_ranks ? mpi::end(status, message, alone) : status;
 }
 
-/// Adds numbers of all ranks, each with those in the same place; exact, they are whole.
+/// Sums over all ranks, place by place; exact, since the numbers are whole.
 inline void sum_over_ranks(std::span<long> numbers) {
     if (has_ranks) mpi::sum(numbers);
 }
@@ -71,7 +71,7 @@ inline long sum_over_ranks(long number) {
     sum_over_ranks(std::span(&number, 1));
     return number;
 }
-/// A part of a list that is cut into as many parts, evenly and by number: of one part, all of it.
+/// One of `parts` parts of a list, contiguous and even to one number; by default all of it.
 struct Share {
     long part = 0, parts = 1;
 

@@ -39,7 +39,7 @@ namespace flip {
     return position < axis.high() ? position : std::max(position - axis.length, axis.low);
 }
 
-/// Whether particles that gather within a cell fall, and the transfer lets that grow.
+/// Whether gravity makes particles gather within cells and fall, undamped by the transfer.
 inline bool gathers(const Problem& problem) {
     const Transfer& t = problem.scheme.transfer;
     return problem.scheme.particle_volumes && !t.filtered && t.part < 1 &&

@@ -31,7 +31,7 @@ inline double pressure(const Material& a, double rho, double e) {
 /// rho c^2, the modulus of an adiabatic change of volume.
 inline double stiffness(const Material& a, double p) { return a.gamma * (p + a.p_infinity); }
 
-/// The compressibility of a smaller modulus is too large for a number: that of dust, and of a gas
+/// Below this rho c^2 a compressibility would overflow: that of dust, and of a gas
 /// without energy.
 inline constexpr double least_stiffness = 1e-200;
 

@@ -148,7 +148,7 @@ inline bool keep_in_rows(const Grid& grid, SortScratch& scratch, Particles& part
     return true;
 }
 
-/// Calls work(begin, end) for the particles of two rows of cells after the other. Those at work at the
+/// Calls work(begin, end) for the particles of each pair of rows of cells. Those at work at the
 /// same time share no node and no cell: with a row on either side, in which they may be, and one more
 /// of the cells around them, they write to six rows.
 template <class Work>

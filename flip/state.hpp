@@ -15,7 +15,7 @@ namespace flip {
 
 /// Energy and momentum budget: what has come in since the start from outside the fluid, through open
 /// and inflow boundaries, from walls, gravity and the trap.
-/// exact: what the particles have now, minus this, does not change
+/// exact: what the fluid has now, minus this, does not change
 struct Budget {
     double mass = 0, momentum_x = 0, momentum_z = 0, energy = 0;
     double angular_momentum = 0;  // about the axis

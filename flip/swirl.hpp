@@ -20,7 +20,7 @@ namespace flip {
 
 namespace detail {
 
-// A ring on the axis itself would have no bound; so near to it nothing else comes.
+// Keeps the energy of a ring on the axis finite; no other ring comes so near.
 inline constexpr double least_radius = 1e-60;
 
 }  // namespace detail

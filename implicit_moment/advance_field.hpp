@@ -23,8 +23,8 @@ inline void take_by_theta(FieldSolver& solver, double dt, const Eigen::VectorXd&
 
 /// E^{n+1} = [E^{n+theta} - (1 - theta) E^n] / theta,   B^{n+1} = B^n - c dt curl E^{n+theta}.
 /// in/out: field, ghosts filled; what theta takes is added to field.by_theta.
-/// exact:  div B is unchanged to round-off. The energy of the field changes by what theta takes and by
-///         -dt sum V J . E^{n+theta}.
+/// exact:  div B is unchanged to round-off. The energy of the field changes by what theta takes, by
+///         -dt sum V J . E^{n+theta}, and with moments by the work of a^2 grad G (solve_field.hpp).
 /// source: [IMM-10]
 inline void advance_field(FieldSolver& solver, double dt, FieldState& field) {
     const Grid& grid = solver.grid;

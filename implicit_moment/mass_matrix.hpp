@@ -13,7 +13,7 @@
 //     J_hat_g = (1/V) sum_p q W_g R_p v_p^n
 //     M_gh    = (1/V) sum_p (q^2 dt/2m) W_g R_p W_h             (a tensor for each pair of places)
 //
-// M is a mass matrix. The slide's chi is M with each row summed to its diagonal, as a lumped mass is,
+// M is a mass matrix. The slide's chi is 4 pi theta dt M with each row summed to its diagonal, as a lumped mass is,
 // and its J - dt/2 div P is J_hat expanded about x^n.
 //
 // g and h run over the 21 places that the particles of one nearest node reach: 2 x 3 x-edges (S1 S2),

@@ -9,7 +9,7 @@
 
 namespace implicit_moment {
 
-/// Mean velocity of a step: vbar = v_t + (v_t x O) + ... solved for vbar = v_t + vbar x O.
+/// Mean velocity of a step, the solution of vbar = v_t + vbar x O.
 ///     vbar = [ v_t + v_t x O + (v_t . O) O ] / (1 + O^2)
 ///     v_t = v + q dt/2m E,   O = q dt B / (2 m c)
 /// in:     v^n; local fields; half_kick = q dt / 2m.
@@ -162,7 +162,7 @@ inline LinearVelocity<Real> linear_mean_velocity(const Velocity<Real>& u,
              vbar.z - c * (A[6] * e.x + A[7] * e.y + A[8] * e.z)}};
 }
 
-/// What u_p of a species means, and how it moves: the letters of the steps.
+/// The dynamics of a species: what u_p means, its energy, and its mean velocity in a step.
 struct Newtonian {
     static constexpr bool is_relativistic = false;
     // By component: a copy of the whole goes through memory in pieces.

@@ -43,7 +43,7 @@ inline void fold_charge_and_current(const Grid& grid, Images images, Moments& mo
 }
 
 /// The same for the stress.
-/// note:   P_nn on the wall is the push of the wall on the particles that it reflects.
+/// note:   P_nn is even with either image: on the wall it is the push on the particles that it reflects.
 inline void fold_stress(const Grid& grid, Images images, Moments& moments) {
     const Parity w = images == Images::plasma ? Parity{+1, +1} : felt_charge(grid);
     common::fold_ghosts(grid, on_nodes, {+1, w.z}, moments.P_xx.data());

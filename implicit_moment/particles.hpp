@@ -28,7 +28,7 @@ struct Particles {
     std::vector<ParticleReal> x_p, z_p;          // position [d_i]
     std::vector<ParticleReal> ux_p, uy_p, uz_p;  // v or gamma v [c]
     std::vector<int> first_of_node;  // node n has [first_of_node[n], first_of_node[n + 1])
-    Division of_ranks;               // the rows of each rank, or tiles of them, as it has theirs
+    Division of_ranks;               // the rows of each rank, in explicit_em its tiles
 
     long count() const { return long(x_p.size()); }
     std::array<std::vector<ParticleReal>*, 5> all() { return {&x_p, &z_p, &ux_p, &uy_p, &uz_p}; }

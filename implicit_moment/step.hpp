@@ -56,7 +56,7 @@ inline bool any_relativistic(const std::vector<Particles>& species) {
 }
 
 /// The field about which vbar is linear, where a species is relativistic and asks for it.
-/// in:     E_theta of the step before, or of the turn before; B in which particles are rotated
+/// in:     E_theta of the step before, or of the iteration before; B in which particles are rotated
 /// out:    scratch.guess, not touched without such a species
 inline void interleave_guess(const Grid& grid, const std::vector<Particles>& species,
                              const VectorField& E_theta, const VectorField& B,

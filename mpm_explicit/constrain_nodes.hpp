@@ -138,9 +138,9 @@ inline void constrain_nodes(std::vector<DofConstraint>& constraints, GrainNodes&
     }
 }
 
-/// nodes.mass, what every grain has at its nodes; bonded grains, what they would have together if the other were
-/// as dense: what is light compares parts of cells, and not materials. Where one of these has none, its node shows
-/// the velocity of the other.
+/// nodes.mass: the mass of each grain at its nodes; of bonded grains that of both together at one density, so that
+/// light means a sliver of a cell and not a light material. A node without mass takes the velocity of its bonded
+/// partner.
 inline void find_masses(const std::vector<Bond>& bonds, GrainNodes& nodes) {
     common::for_each_block(nodes.size(), [&](int, long begin, long end) {
         for (long i = begin; i < end; ++i) nodes.mass[i] = nodes.sums[i].m;
@@ -165,9 +165,9 @@ inline void find_masses(const std::vector<Bond>& bonds, GrainNodes& nodes) {
 }
 
 /// Constrains nodes that have less than a part of the mass of their neighbor.
-/// A particle that has come a small way d into a cell sees the nodes behind it with weights of d
-/// and gradients that some of their motions feel with d only: stress would drive those with 1/d,
-/// and round-off with them. The energy theorem of mpm_implicit holds with any constraints: they make a
+/// A particle a small way d inside a cell gives the far nodes masses of order d, and its stress forces
+/// of order 1: accelerations there, and the round-off in them, grow as 1/d.
+/// The energy theorem of mpm_implicit holds with any constraints: they make a
 /// smaller space of velocities.
 /// in:     light, that part; bonds, whose grains are held alike where they are joined
 /// in/out: nodes.sums, which move along; nodes.ghosts()

@@ -35,8 +35,8 @@ struct BatchVelocity {
     }
 };
 
-/// in:     flip, the FLIP fraction; frozen particles keep their places
-/// in/out: particles; sums of their tiles
+/// Particles take the increment of velocity from the nodes, and move with v_i^1.
+/// in/out: particles; sums of their tiles. in: flip, the FLIP fraction; frozen particles keep their places
 /// exact:  the momentum of the particles changes by that of the nodes, but for what walls stop
 template <class Shape>
 void move_particles(const Shape& shape, const std::vector<Grain>& grains,

@@ -68,7 +68,7 @@ struct Particles {
     std::vector<double> vx_p, vy_p;                  // velocity
     std::vector<double> m_p;                         // mass
     std::vector<double> V_p;                         // volume
-    std::vector<double> sxx_p, syy_p, sxy_p, szz_p;  // stress, at half time levels
+    std::vector<double> sxx_p, syy_p, sxy_p, szz_p;  // stress; in mpm_explicit at half time levels
     std::vector<double> yield_p;                     // accumulated plastic strain
     std::vector<double> cxx_p, cxy_p, cyx_p, cyy_p;  // affine motion; empty: none is carried
 

@@ -5,7 +5,7 @@
 //      |  __^__|____   |      them its mass, by S_ip; where the surface is along a normal n is then
 //      | /  s  |    \  |      at every node
 //      o---p---o-----\-o          sum_s S_ip (A_s.n) (x_s.n) / sum_s S_ip (A_s.n)
-//                             in which a side that n is along has no part.
+//                             in which a side parallel to n does not count, as A_s.n = 0.
 // Sides that meet at a sharp corner have sums each for itself, and the farther one along n counts: their mean
 // would lift the corner off what the grain stands on.
 // So of its parts a particle needs no more than the sums A and M of particles.hpp.
@@ -77,7 +77,7 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
 /// in:     nodes.motion, v_1, with which particles move
 /// exact:  F is the gradient of that move. Nodes that turn, by v_i = (R - 1) x_i/dt, turn the parts by
 ///         R, whatever the angle; any even F takes the outline to its image, of det F times its area
-/// note:   |A| <= 2 h and |M| <= 2 h^2, which no part of a particle has at the start
+/// note:   clamped to |A| <= 2 h and |M| <= 2 h^2, more than a particle carries at the start
 template <class Shape>
 void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const GrainNodes& nodes,
                    double dt, Particles& particles) {

@@ -5,8 +5,8 @@
 //     sigma^{1/2} - sigma^{-1/2} = T : (e^{1/2} - e^{-1/2})                             [MPM-10]
 //     e^{1/2} - e^{-1/2} = 1/2 (grad v^0 + grad v^0T) dt                                [MPM-11]
 //     f_i = - sum_p V_p^{1/2} sigma_p^{1/2} . grad S_ip                  the force of   [MPM-12]
-// The slide prints [MPM-9] with a minus: that is the density's, [MPM-1]. In all they are what
-// [MPM-1..3] are for a particle.
+// The slide prints [MPM-9] with a minus: that is the density's, [MPM-1]. Together they are
+// [MPM-1..3] of a particle.
 #pragma once
 
 #include <variant>

@@ -16,8 +16,8 @@
 
 namespace mpm_implicit {
 
-/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; damping of the velocity; frozen
-///         particles keep their places
+/// Particles take the increment of velocity from the nodes, and move with v_i^theta.
+/// in:     nodes.motion, v^0 and v^theta; flip, the FLIP fraction; damping of the velocity; whether they are frozen
 /// in/out: particles; sums of their tiles
 /// exact:  without damping the momentum of the particles changes by that of the nodes, but for what walls stop;
 ///         with the consistent mass so does sum_p m_p x_p^0 x v_p

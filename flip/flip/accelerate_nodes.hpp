@@ -87,7 +87,7 @@ void fill_pressure(const Grid& grid, Values& p) {
 
 /// Adds the viscous force of the fluid, from the velocities before the step.
 ///   F_g -= sum over cells of the integral of tau . grad S_g, by Gauss's rule of four points
-/// exact:  forces sum to zero but for walls; a rigid motion feels none
+/// exact:  forces sum to zero but for walls, in rings along z alone; a rigid motion feels none
 inline void add_viscous_force(const Grid& grid, double viscosity, Mesh& mesh) {
     if (viscosity == 0) return;
     Nodes& g = mesh.nodes;
@@ -206,7 +206,7 @@ inline void find_known_forces(const Grid& grid, const Boundaries& boundaries, do
 /// in:     nodes.vx0, vz0; cells.p_step inside, the pressure that acts in this step; known forces
 /// in/out: nodes.fx, fz: with the force of pressure
 /// out:    nodes.vxL, vzL, 0 on nodes without mass
-/// exact:  internal forces sum to zero
+/// exact:  internal forces sum to zero, in rings along z alone
 /// source: [FLIP-6]
 inline void accelerate_nodes(const Problem& problem, double dt, Mesh& mesh) {
     const Grid& grid = problem.grid;

@@ -13,8 +13,8 @@ inline constexpr double least_mass = 1e-280;
 
 namespace detail {
 
-// What a batch of particles, the first of them `begin`, leaves on the mesh. A particle of apic brings to each node the velocity
-// that its own gradient gives it there.
+// Deposits a batch of particles, the first of them `begin`. A particle of apic brings to each node the velocity that
+// its own gradient gives it there.
 template <bool affine, bool volumes>
 void deposit_batch(WeightScale scale, const Material* materials, const Particles& p, long begin,
                    long count_here, const Grid& grid, Mesh& mesh) {

@@ -5,8 +5,8 @@
 //                     \________________/
 //                   v_bar = (v^0 + v^L)/2           at which forces work, as a square changes by
 //                                                   twice its mean times its change
-//     p_c acts on nodes with D^T and works on cells with D v_bar, q_c likewise with the strain rate:
-//     what nodes gain, cells lose
+//     p_c acts on nodes with D^T and works on cells with D v_work, v_bar if explicit and the mass lumped;
+//     q_c likewise with the strain rate: what nodes gain, cells lose
 #pragma once
 
 #include "flip/flip/mass_matrix.hpp"

@@ -1,5 +1,5 @@
-// on the mesh: where particles of a liquid lie too close, they are moved apart; those of a gas without
-// another material whose paths are not confined, to where they are missing, too.
+// on the mesh: moves particles of a liquid apart where they crowd, and those of a single gas that is not
+// confined also to where they are missing.
 //
 // Nothing in the equations brings the places of particles back to their volumes. Where water falls back upon
 // itself, or particles gather bit by bit, cells come to hold more of it than their volume, and its surface
@@ -82,8 +82,8 @@ inline void smooth_load(const Grid& grid, const PressureCells& cells, Eigen::Vec
 
 }  // namespace detail
 
+/// Adds the displacement that spreads crowded cells to nodes.increment, the velocity that moves particles.
 /// in:     cells.crowding, surface; nodes.m
-/// in/out: nodes.increment, the velocity that moves particles
 /// exact:  nothing is moved through walls; without crowded cells, of a gas without empty ones, nothing at all
 inline void spread_crowded(const Problem& problem, double dt, Mesh& mesh) {
     const Grid& grid = problem.grid;

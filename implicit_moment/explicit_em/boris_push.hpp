@@ -50,7 +50,7 @@ inline void push(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> h
 }
 // [/boris]
 
-/// u^n from u^{n-1/2}: half the kick of E, then half the rotation.
+/// u^n from u^{n-1/2}: half the kick of E, then the rotation of half a step, by 2 atan(|t|/2).
 /// exact:  half_step_back undoes it.
 template <class Real>
 inline void half_step(Velocity<Real>& u, const LocalField<Real>& at, NumberOf<Real> half_kick,

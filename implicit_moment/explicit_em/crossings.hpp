@@ -40,7 +40,7 @@ struct Crossings {
     std::vector<int> staying;     // [cell] particles that have stayed: the first of the cell
     std::vector<int> first_next;  // [cell] where it begins after the step; one more for the end
 
-    /// Makes it that of a species of which nobody crosses.
+    /// Empties it: no particle crosses.
     void clear(long cells, long per_tile, const Division& division) {
         of_ranks = division;
         tiles.resize(std::size_t((cells + per_tile - 1) / per_tile));

@@ -54,14 +54,14 @@ inline void keep_within(const common::Axis& axis, const ParticleVector& x, Parti
     stays = x < not_below(axis.high()) ? stays : 0.0 * stays;
 }
 
-/// The part of a way D, from d, until a border of the cell, in one direction [cells]; 2 of no way.
+/// The fraction of the displacement D after which a particle at d is at a border of its cell; 2 where D = 0.
 inline ParticleVector to_border(const ParticleVector& d, const ParticleVector& D, ParticleReal low,
                                 ParticleReal high) {
     const ParticleVector to = D > 0.0 ? high - d : low - d, way = D == 0.0 ? 1.0 + D : D;
     return D == 0.0 ? 2.0 + D : to / way;
 }
 
-/// The part within the cell, as deposit_current finds it, of that in both directions.
+/// The fraction of the step within the cell: the smaller of both directions, from 0 to 1, as in deposit_current.
 inline ParticleVector first_part(const ParticleVector& x, const ParticleVector& z) {
     ParticleVector part = x <= z ? x : z;
     part = part > 0.0 ? part : 0.0 * x;

@@ -21,8 +21,8 @@ inline double mixed_overlap(double angle) {
     return (11 * std::cos(0.5 * angle) + std::cos(1.5 * angle)) / 12;
 }
 
-/// The mean of what M makes of a uniform E, component a from component b: the sum of their entries over the
-/// cells. in: pair, 3 a + b
+/// The mean over the cells of the current J_a that M makes of a uniform field E_b = 1.
+/// in: pair, 3 a + b
 inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) {
     const long stride = grid.stride();
     const int first = detail::first_offset(pair), end = detail::first_offset(pair + 1);
@@ -41,7 +41,7 @@ inline double mean_response(const Grid& grid, const MassMatrix& mass, int pair) 
 /// J = M E.
 /// in:     E as particles feel it, ghosts filled
 /// out:    J, ghosts filled
-/// exact:  sum_g J_g . E_g V over the unknowns is the work of the kicks on the particles, >= 0.
+/// exact:  sum_g J_g . E_g V >= 0 over the unknowns: the power of E on the velocity that E itself gives.
 inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* E, double* J) {
     const long stride = grid.stride(), size = grid.size();
     const long margin = 2 * stride + 2, room = size + 2 * margin;

@@ -33,8 +33,8 @@ struct FieldSettings {
     SmoothingSettings smoothing;
 
     bool uses_mass_matrix() const { return response == "mass_matrix"; }
-    // A plasma that moves needs it: with B^n the particles' own current drives transverse waves, at a rate of
-    // half of omega_p V/c, which no energy forbids.
+    // A plasma that drifts with V needs it: rotated in B^n, its own current drives transverse waves at the rate
+    // omega_p V/2c, which conservation of energy does not exclude.
     bool rotates_in_the_middle() const {
         return B_level == "middle" || (B_level == "by_response" && uses_mass_matrix());
     }

@@ -6,8 +6,8 @@
 //
 // with w of the smoothing, chi the mean susceptibility with its rotation, and g_ab of what lies between the
 // places of components a and b: averages, or with the mass matrix the overlap of its splines. So the
-// inverse is: to waves (waves.hpp), 3 x 3 products, and back. Between walls the average of a component
-// that is even about them is not odd, so that rotation has no such form there, and is left out.
+// inverse is: to waves (waves.hpp), 3 x 3 products, and back. Between walls the averages in the rotation do not
+// have the parities of the waves, and chi is taken without it.
 #pragma once
 
 #include <Eigen/LU>
