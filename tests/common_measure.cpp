@@ -302,6 +302,13 @@ TEST_CASE("growth that is over within a period is not measured in what comes aft
     CHECK(!measured(1e-4).high);
     CHECK(measured(1e-4).found);
     CHECK(measured(0.1).high);
+    // What ends before it could come from a tenth to its maximum is only short.
+    std::vector<double> t;
+    std::vector<Complex> z;
+    for (int n = 0; n < 80; ++n) t.push_back(0.1 * n), z.push_back(std::exp(0.025 * n));
+    const MeasuredMode early = measure_mode(t, z, {.expected = {{0, 0.25}}, .below_maximum = 0.1});
+    CHECK(!early.high);
+    CHECK(early.reason.find("raise time.end") != std::string::npos);
 }
 
 TEST_CASE("of noise alone no mode is reported") {

@@ -375,10 +375,10 @@ grains incline_block.toml theory.compare=none grain.block.y=0.44 grain.block.hei
     grain.plate.x=0.27 grain.plate.y=0.17 grain.plate.width=0.5 grain.right.shape=box grain.right.angle=20 \
     grain.right.x=0.7913 grain.right.y=0.17 grain.right.width=0.5 grain.right.height=0.15 grain.right.material=plate
     no warning
-grains incline_block.toml contact.friction=0.9
-    warning: friction of 0.9, above 0.85: a block that it holds on a slope flutters without
-    viscosity and may slide; set material.<name>.viscosity = 0.001635
-grains incline_block.toml contact.friction=0.9 material.default.viscosity=0.001635 -> no warning
+grains incline_block.toml contact.friction=0.7
+    warning: friction of 0.7, above 0.65: a block that it holds near the angle of friction flutters
+    without viscosity and may slide; set material.<name>.viscosity = 0.00327
+grains incline_block.toml contact.friction=0.7 material.default.viscosity=0.003 -> no warning
 grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 contact.friction=0.1
     warning: a disk on a rigid surface with friction of 0.1: where it slips friction gives it too
     little spin, by a part of 0.01 over the coefficient where it is stiff, and up to 0.05 where

@@ -73,7 +73,7 @@ inline bool start_run(const ProgramInfo& info, const CommandLine& command,
             std::printf("  %-33s about %.4g s, with %.2g core(s) each\n", "time with them",
                         seconds / cores, cores);
     }
-    if (command.dry_run) try {
+    if (command.dry_run && !command.complete) try {
             refuse_before_start(command, prepared.steps, prepared.bytes);
         } catch (const InputError& error) {
             std::fprintf(stderr, "warning: the run will be refused here: %s\n", error.what());

@@ -422,14 +422,15 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     long block = 1;
     const Rows rows = window_of(times, z, search, wanted, block, result.high);
     const double dt = times[1] - times[0];
-    // From there to its maximum growth would have taken less than the rest of the run.
+    // Growth from the end of the window to the maximum takes less than what is left; a short run is not high.
     const double ended = times[std::size_t(std::max(0L, rows.end - 1))],
-                 left = search.end < times.back() ? HUGE_VAL : times.back() - ended;
-    result.over = wanted.growth * left > -1.5 * std::log(search.below_maximum);
-    std::string cure = result.over ? "; growth is over then"
-                       : result.high
-                           ? "; it begins with more than a tenth of its maximum: lower the seed"
-                           : ": raise time.end";
+                 left = search.end < times.back() ? HUGE_VAL : times.back() - ended,
+                 e_folds = -1.5 * std::log(search.below_maximum);
+    result.over = wanted.growth * left > e_folds;
+    result.high &= wanted.growth * (times.back() - std::max(search.begin, times[0])) > e_folds;
+    std::string cure = result.over   ? "; growth is over then"
+                       : result.high ? "; it begins near its maximum: lower what it starts from"
+                                     : ": raise time.end";
     if (wanted.growth < 0 && left > 0) cure = "; " + search.faded;
     if (rows.count() < 8 * block)
         return cannot("only " + std::to_string(std::max(0L, rows.count())) +

@@ -76,8 +76,10 @@ inline void judge_inflows(const Case& parameters, double time, const CellFields&
         const Inflow in = detail::inflow_of(parameters, parameters.boundaries[side].inflow);
         const double u = std::fabs(is_x_side(side) ? in.vx : in.vz);
         const FluidInFront front = fluid_in_front(parameters, cells, side, in);
-        // At Mach 1 nothing runs back to the inflow.
-        if (!(u < 0.99 * in.c) || front.density == 0) continue;
+        // At Mach 1 nothing runs back to the inflow; and what came in has to fill these cells.
+        if (!(u < 0.99 * in.c) || front.density == 0 ||
+            in.rho * u * time < front.density * front.distance)
+            continue;
         const std::string name = side_names[side];
         const auto lets_out = [&](Side beside) {
             return parameters.is(beside, "open") || parameters.is(beside, "inflow");
@@ -86,10 +88,11 @@ inline void judge_inflows(const Case& parameters, double time, const CellFields&
         const bool pipe = !lets_out(beside) && !lets_out(static_cast<Side>(beside + 1));
         const double limit = 1.1 + front.distance / (in.c * time);
         if (pipe && limit < 2) {
+            const std::string cure = cure_of_inflow(parameters, side, in, u);
             summary.hint(sentence(
                 "an inflow slower than sound keeps its mass flux and not its pressure, and where "
-                "the pipe draws more than that, the gas leaves it in a jump that loses entropy: ",
-                cure_of_inflow(parameters, side, in, u)));
+                "the pipe draws more than that, the gas leaves it in a jump that loses entropy",
+                cure.empty() ? "" : ": ", cure));
             summary.result_at_most("mach_behind_" + name, front.mach, "", limit,
                                    sentence("gas that came in at Mach ", u / in.c,
                                             " stays below 1 in a pipe; 0.1 + x/(c t) more"));

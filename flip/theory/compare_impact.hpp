@@ -109,9 +109,9 @@ inline void compare_impact(const FinishedRun& run) {
             ? "take flip, or a faster impact, or raise particles.per_cell_x and per_cell_z"
             : "take particles.per_cell_x = particles.per_cell_z = 4 on a lattice, "
               "viscosity.linear = 0.5 and viscosity.quadratic = 1");
-    run.summary.result_at_most("kinetic_energy_left", left, "", 1,
+    run.summary.result_at_most("kinetic_energy_left", left, "", 1.01,
                                "relative to the start, where the fluid has the least internal "
-                               "energy");
+                               "energy; 0.01 more for the noise of bodies that meet");
 }
 
 inline constexpr Comparison impact_comparison{"impact",  validate_impact, nullptr,

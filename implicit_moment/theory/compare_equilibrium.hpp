@@ -76,15 +76,15 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
                  heat = relativistic_heat(w);
     const std::string tearing =
         heat > 0 ? hot_sheet(heat)
-        : flux > 0.1 * w.harris.thickness && grid.x.length > tears &&
-                -gained("magnetic") > 0.5 * heated
+        : flux > 0.1 * w.harris.thickness && grid.x.length > tears
             ? sentence("the sheet tears by itself, for the box is longer than 2 pi lambda = ",
                        tears, ", and has reconnected ", flux,
                        " B0 d_i: shorten time.end or grid.length_x, or raise harris.particles")
             : "";
-    summary.hint(!tearing.empty() ? tearing
-                                  : "few particles exchange heat: raise harris.particles; or "
-                                    "refine the mesh, which heats what it does not resolve");
+    const bool by_tearing = !tearing.empty() && (heat > 0 || -gained("magnetic") > 0.5 * heated);
+    summary.hint(by_tearing ? tearing
+                            : "few particles exchange heat: raise harris.particles; or "
+                              "refine the mesh, which heats what it does not resolve");
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,

@@ -72,8 +72,7 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                                    : "";
     if (seen.over || seen.high)
         return (seen.over ? std::string("growth is over before it tells enough")
-                          : "it begins with more than a tenth of its maximum, or with another "
-                            "mode that has as much") +
+                          : "it begins near its maximum, or with another mode that has as much") +
                ": lower the seed, and where that is below the noise raise the particles per cell" +
                (std::abs(theory.omega) * w.dt > 0.1
                     ? std::string("; or lower time.dt, which changes it")

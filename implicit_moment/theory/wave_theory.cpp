@@ -331,7 +331,7 @@ void refuse_without_near(const Case& w, const std::string& wave) {
     refuse(true, wave,
            " needs theory.near: without temperatures and drifts this plasma has waves at omega = ",
            (found.empty() ? "none in theory.component" : found),
-           "; for what grows without a frequency give a tenth of its growth, or less");
+           "; for what grows without a frequency give a hundredth to a tenth of its growth");
 }
 
 // The Lorentz factor is not in what turns about B.

@@ -213,7 +213,14 @@ inline std::vector<std::string> unused_warnings(const Problem& problem,
     return warnings;
 }
 
-/// Warnings of friction that nodes do not hold as they should, as measured: of blocks that it holds on slopes of 38
+/// The viscosity with which no block flutters that friction holds, as measured: a part of the time in which sound
+/// crosses its thin side.
+inline double steadying_viscosity(const Outline& outline, const Material& material) {
+    const Bounds box = bounds(outline);
+    return 0.6 * std::min(box.x_high - box.x_low, box.y_high - box.y_low) / sound_speed(material);
+}
+
+/// Warnings of friction that nodes do not hold as they should, as measured: of blocks that it holds on slopes of 34
 /// degrees and more, and of disks that slip beside surfaces at an angle to the mesh.
 inline std::vector<std::string> friction_warnings(const Problem& problem,
                                                   const std::vector<Material>& materials,
@@ -228,19 +235,18 @@ inline std::vector<std::string> friction_warnings(const Problem& problem,
     const auto is_disk = [&](const PlannedGrain& plan) {
         return !is_rigid(plan) && plan.outline.kind == OutlineKind::disk;
     };
-    double least = 0, thin = 0;  // viscosity that holds a block, the time in which sound crosses it
+    double least = 0;  // viscosity that is too low somewhere
     for (const PlannedGrain& plan : plans) {
         const Material& material = materials[plan.material];
         if (is_rigid(plan) || is_disk(plan)) continue;
-        const Bounds box = bounds(plan.outline);
-        thin = std::min(box.x_high - box.x_low, box.y_high - box.y_low) / sound_speed(material);
-        if (material.viscosity < 0.2 * thin) least = std::max(least, 0.3 * thin);
+        const double steady = steadying_viscosity(plan.outline, material);
+        if (material.viscosity < 0.8 * steady) least = std::max(least, steady);
     }
-    if (pulled && most > 0.85 && least > 0)
+    if (pulled && most > 0.65 && least > 0)
         warnings.push_back(
             "friction of " + format(most) +
-            ", above 0.85: a block that it holds on a slope flutters without viscosity and may "
-            "slide; set material.<name>.viscosity = " +
+            ", above 0.65: a block that it holds near the angle of friction flutters without "
+            "viscosity and may slide; set material.<name>.viscosity = " +
             format(least) + (most > 1.5 ? ", which above 1.5 may not do" : ""));
     const auto is_turned = [&](const PlannedGrain& plan) {
         const std::vector<Point>& at = plan.outline.corners;

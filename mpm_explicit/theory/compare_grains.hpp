@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_explicit/setup/check_case.hpp"
 #include "mpm_explicit/theory/compare_elastic.hpp"
 #include "mpm_explicit/theory/scheme_theory.hpp"
 
@@ -96,14 +97,16 @@ inline void compare_incline(const FinishedRun& run,
                                         " on, when gravity is there: raise time.end");
     const bool is_round = run.planned.plans[run.planned.target()].outline.kind == OutlineKind::disk;
     const double mu = friction_on_plate(run.planned);
-    const std::string flutters = run.material().viscosity < 3e-3 && !is_round
+    const double steady =
+        steadying_viscosity(run.planned.plans[run.planned.target()].outline, run.material());
+    const std::string flutters = run.material().viscosity < 0.8 * steady && !is_round
                                      ? "friction follows the pressure, which flutters where a "
-                                       "grain slides, or friction above 0.85 holds it, without "
-                                       "viscosity: set "
-                                       "material.*.viscosity = 3e-3; or "
+                                       "grain slides, or friction above 0.65 holds it, without "
+                                       "viscosity: set material.*.viscosity = " +
+                                           format(steady) + "; or "
                                      : "";
     summary.hint(
-        exact == 0 ? (mu > 0.85 ? flutters : "") +
+        exact == 0 ? (mu > 0.65 ? flutters : "") +
                          "what friction holds sways on its base while its weight comes on: raise "
                          "load.rise, load.damping or time.end"
                    : flutters + (is_round ? "a round grain rolls on single nodes: " : "") +
@@ -225,11 +228,12 @@ inline std::string rest_hint(const FinishedRun& run) {
     const Mesh mesh = w.problem.mesh();
     const double half_cells = 2 * (outline.x - mesh.x_low) / mesh.h,
                  line = mesh.x_low + 0.5 * mesh.h * std::round(half_cells);
-    if (outline.kind == OutlineKind::disk && std::fabs(half_cells - std::round(half_cells)) > 1e-6)
+    if (outline.kind == OutlineKind::disk)
         return "nodes hold a disk beside its lowest point, and it rolls to where they are alike on "
                "both sides: put its center at x = " +
-               format(line) + ", or set contact.friction = 0 and load.damping = " +
-               format(std::sqrt(-w.problem.gravity_y / outline.radius));
+               format(line) + ", and set contact.friction = 0 and load.damping = " +
+               format(std::sqrt(-w.problem.gravity_y / outline.radius)) +
+               "; where that is not enough, refine the mesh";
     if (run.planned.scheme.implicit)
         return "stress that is held turns into noise of the mesh where nothing damps what rings: "
                "set method.theta = 0.51, or material.<name>.viscosity = " +
