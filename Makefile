@@ -129,7 +129,7 @@ The particle-in-cell family in running code
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, forty minutes; resumable
-  make test              the facts, half an hour on two cores, most of it compiling   (make test ARGS='-R gmres': some)
+  make test              the facts, some 25 minutes on two cores, half of it compiling   (make test ARGS='-R gmres': some)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
   make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
@@ -198,6 +198,13 @@ $(objects)/common/ranks.o: common/ranks.cpp $(BUILD)/flags
 	@command -v mpicxx >/dev/null || { echo "'mpicxx' is not installed: run 'make deps-mpi'" >&2; exit 2; }
 	@mkdir -p $(@D)
 	$(mpi_cxx) $(flags) $(defines) -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX $(include_paths) -MMD -MP -c -o $@ $<
+
+# Facts take half as long to compile at -O1, and most of them no longer to run: what takes long are programs and theory.
+long_at_O1 := cic_theory_mesh cic_theory_waves implicit_moment_drift_theory implicit_moment_mass_matrix implicit_moment_theory \
+              mpm_explicit_viscosity mpm_implicit_viscosity
+ifeq ($(SANITIZE),)
+$(patsubst %,$(objects)/tests/%.o,$(filter-out $(long_at_O1),$(tests))): private OPTIMIZE := -O1
+endif
 
 # The reader of case files must refuse bad input with a message, never with an assertion of its library.
 $(objects)/common/run/case_file.o: private defines += -DNDEBUG
