@@ -359,7 +359,7 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
         ++rows.end;
     const bool grows = wanted.growth > 0 && search.below_maximum < 1;
     const auto size = [&](long n) { return std::abs(z[std::size_t(n)]); };
-    // But for what grows on the way.
+    // The largest amplitude in some rows, over what the mode grows until then.
     const auto largest = [&](long begin, long end, double growth = 0) {
         double most = 0;
         for (long n = begin; n < std::min(end, rows.end); ++n)
@@ -422,7 +422,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     long block = 1;
     const Rows rows = window_of(times, z, search, wanted, block, result.high);
     const double dt = times[1] - times[0];
-    // Growth from the end of the window to the maximum takes less than what is left; a short run is not high.
+    // Over: growth from the end of the window to the maximum takes less than the rest. A short run is not high.
     const double ended = times[std::size_t(std::max(0L, rows.end - 1))],
                  left = search.end < times.back() ? HUGE_VAL : times.back() - ended,
                  e_folds = -1.5 * std::log(search.below_maximum);

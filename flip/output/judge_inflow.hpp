@@ -12,14 +12,14 @@
 
 namespace flip {
 
-/// What has come in through an end, in the cells in front of it.
+/// The fluid in the cells in front of an end.
 struct FluidInFront {
     double density = 0, pressure = 0, velocity = 0, mach = 0;  // velocity into the mesh
     double distance = 0;                                       // of the farthest cell
 };
 
 /// The mean from the fifth to the twelfth cell, beyond those in which what comes in becomes what is there.
-/// out:    density 0 where what came in has not filled these cells
+/// out:    density 0 where there is another material, too, or no pressure
 inline FluidInFront fluid_in_front(const Case& parameters, const CellFields& cells, Side side,
                                    const Inflow& in) {
     const Grid& grid = parameters.grid;

@@ -213,11 +213,64 @@ inline std::vector<std::string> unused_warnings(const Problem& problem,
     return warnings;
 }
 
-/// The viscosity with which no block flutters that friction holds, as measured: a part of the time in which sound
-/// crosses its thin side.
+/// Whether a side of an outline is level, along x or along y at a height, and ends at a place, each to within.
+inline bool level_side_ends(const Outline& outline, bool along_x, double height, double place,
+                            double within) {
+    const auto meet = [&](double a, double b) { return std::fabs(a - b) < within; };
+    const std::vector<Point>& at = outline.corners;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const Point &p = at[k], &q = at[(k + 1) % at.size()];
+        if (meet(along_x ? p.y : p.x, height) && meet(along_x ? q.y : q.x, height) &&
+            (meet(along_x ? p.x : p.y, place) || meet(along_x ? q.x : q.y, place)))
+            return true;
+    }
+    return false;
+}
+
+/// Warnings of rigid grains whose level sides abut, on the side on which weight presses. As measured: a block
+/// without friction is stopped there, a disk keeps 0.88 of its velocity.
+inline std::vector<std::string> seam_warnings(const Problem& problem,
+                                              const std::vector<Material>& materials,
+                                              const std::vector<PlannedGrain>& plans) {
+    std::vector<std::string> warnings;
+    const double within = 0.1 * problem.mesh().h;
+    const auto is_rigid = [&](const PlannedGrain& plan) {
+        return materials[plan.material].law == Law::rigid;
+    };
+    if (std::ranges::all_of(plans, is_rigid)) return warnings;
+    for (const PlannedGrain& a : plans) {
+        for (const PlannedGrain& b : plans) {
+            if (!is_rigid(a) || !is_rigid(b)) continue;
+            const Bounds one = bounds(a.outline), two = bounds(b.outline);
+            for (const bool along_x : {true, false}) {
+                const double g = along_x ? problem.gravity_y : problem.gravity_x,
+                             end = along_x ? one.x_high : one.y_high,
+                             begin = along_x ? two.x_low : two.y_low;
+                const auto both = [&](double of_one, double of_two) {
+                    return std::fabs(of_one - of_two) < within &&
+                           level_side_ends(a.outline, along_x, of_one, end, within) &&
+                           level_side_ends(b.outline, along_x, of_two, end, within);
+                };
+                const bool above = along_x ? both(one.y_high, two.y_high)
+                                           : both(one.x_high, two.x_high),
+                           below =
+                               along_x ? both(one.y_low, two.y_low) : both(one.x_low, two.x_low);
+                if (std::fabs(end - begin) < within && ((g <= 0 && above) || (g >= 0 && below)))
+                    warnings.push_back(
+                        "rigid grains '" + a.name + "' and '" + b.name + "' abut at " +
+                        (along_x ? "x = " : "y = ") + format(end) +
+                        ": what slides over the seam is stopped or slowed by their ends; "
+                        "make one grain of them");
+            }
+        }
+    }
+    return warnings;
+}
+
+/// The viscosity with which no block flutters that friction holds, as measured with coefficients up to 1.5: a part
+/// of the time in which sound crosses where it is thinnest.
 inline double steadying_viscosity(const Outline& outline, const Material& material) {
-    const Bounds box = bounds(outline);
-    return 0.6 * std::min(box.x_high - box.x_low, box.y_high - box.y_low) / sound_speed(material);
+    return 0.6 * width(outline.corners) / sound_speed(material);
 }
 
 /// Warnings of friction that nodes do not hold as they should, as measured: of blocks that it holds on slopes of 34
@@ -363,46 +416,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
     const auto is_flat = [&](const PlannedGrain& plan) {
         return !is_rigid(plan) && plan.outline.kind != OutlineKind::disk;
     };
-    // As measured: a block without friction is stopped, a disk keeps 0.88 of its velocity.
-    for (const PlannedGrain& a : plans) {
-        if (!is_rigid(a) || !std::ranges::any_of(plans, std::not_fn(is_rigid))) continue;
-        for (const PlannedGrain& b : plans) {
-            if (!is_rigid(b)) continue;
-            const Bounds one = bounds(a.outline), two = bounds(b.outline);
-            const auto meet = [&](double x, double y) { return std::fabs(x - y) < 0.1 * mesh.h; };
-            // Whether a side at this level ends there.
-            const auto ends = [&](const Outline& outline, bool x, double level, double there) {
-                const std::vector<Point>& at = outline.corners;
-                for (std::size_t k = 0; k < at.size(); ++k) {
-                    const Point &p = at[k], &q = at[(k + 1) % at.size()];
-                    if (meet(x ? p.y : p.x, level) && meet(x ? q.y : q.x, level) &&
-                        (meet(x ? p.x : p.y, there) || meet(x ? q.x : q.y, there)))
-                        return true;
-                }
-                return false;
-            };
-            const auto level = [&](bool x, double of_one, double of_two, double there) {
-                return meet(of_one, of_two) && ends(a.outline, x, of_one, there) &&
-                       ends(b.outline, x, of_two, there);
-            };
-            // Weight presses on one side.
-            const bool
-                along_x =
-                    meet(one.x_high, two.x_low) &&
-                    ((problem.gravity_y <= 0 && level(true, one.y_high, two.y_high, one.x_high)) ||
-                     (problem.gravity_y >= 0 && level(true, one.y_low, two.y_low, one.x_high))),
-                along_y =
-                    meet(one.y_high, two.y_low) &&
-                    ((problem.gravity_x <= 0 && level(false, one.x_high, two.x_high, one.y_high)) ||
-                     (problem.gravity_x >= 0 && level(false, one.x_low, two.x_low, one.y_high)));
-            if (along_x || along_y)
-                warnings.push_back(
-                    "rigid grains '" + a.name + "' and '" + b.name + "' abut at " +
-                    (along_x ? "x = " + format(one.x_high) : "y = " + format(one.y_high)) +
-                    ": what slides over the seam is stopped or slowed by their ends; "
-                    "make one grain of them");
-        }
-    }
+    for (const std::string& warning : seam_warnings(problem, materials, plans))
+        warnings.push_back(warning);
     if (parameters.shape != "linear" &&
         std::ranges::any_of(bonds_of(problem, plans, materials), grips))
         warnings.push_back("method.shape = \"" + parameters.shape +

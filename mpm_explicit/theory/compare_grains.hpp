@@ -95,11 +95,11 @@ inline void compare_incline(const FinishedRun& run,
         return summary.not_measured("acceleration",
                                     "it is measured from t = " + format(from) +
                                         " on, when gravity is there: raise time.end");
-    const bool is_round = run.planned.plans[run.planned.target()].outline.kind == OutlineKind::disk;
+    const Outline& outline = run.planned.plans[run.planned.target()].outline;
+    const bool is_round = outline.kind == OutlineKind::disk;
     const double mu = friction_on_plate(run.planned);
-    const double steady =
-        steadying_viscosity(run.planned.plans[run.planned.target()].outline, run.material());
-    const std::string flutters = run.material().viscosity < 0.8 * steady && !is_round
+    const double steady = is_round ? 0 : steadying_viscosity(outline, run.material());
+    const std::string flutters = run.material().viscosity < 0.8 * steady
                                      ? "friction follows the pressure, which flutters where a "
                                        "grain slides, or friction above 0.65 holds it, without "
                                        "viscosity: set material.*.viscosity = " +
