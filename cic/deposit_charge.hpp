@@ -75,12 +75,37 @@ inline void add_charge(const Particles& particles, const Grid& grid, const Schem
     });
 }
 
+namespace detail {
+
+// What the clouds of the energy-conserving scheme have behind walls: an image of opposite charge. With
+// the potential behind a wall, phi_-1 = 2 phi_0 - phi_1, a charge there is worth two on the wall less one
+// on the node inside, so that it has the same moment, and is all on the wall when its particle arrives.
+// in/out: rho_g, before ghosts are folded; ghosts behind walls are zero afterwards
+inline void move_ghosts_to_walls(const Grid& grid, Field& rho_g) {
+    const auto move = [&](double& ghost, double& wall, double& inside) {
+        wall += 2 * ghost, inside -= ghost, ghost = 0;
+    };
+    const long nx = grid.x.cells, nz = grid.z.cells;
+    const auto rho = [&](long i, long j) -> double& { return rho_g[grid.index(i, j)]; };
+    for (long i = -1; i <= nx + 1 && !grid.z.periodic; ++i) {
+        move(rho(i, -1), rho(i, 0), rho(i, 1));
+        move(rho(i, nz + 1), rho(i, nz), rho(i, nz - 1));
+    }
+    for (long j = -1; j <= nz + 1 && !grid.x.periodic; ++j) {
+        move(rho(-1, j), rho(0, j), rho(1, j));
+        move(rho(nx + 1, j), rho(nx, j), rho(nx - 1, j));
+    }
+}
+
+}  // namespace detail
+
 /// Charge density of all particles and of the fixed background.
 ///   rho_g = background + sum_p q_p S(x_g - x_p) / V_c
 /// in:     every position on the mesh; in one dimension V_c = dx, in two dx dz
 /// out:    rho_g on the nodes, ghosts filled; on a node of a wall, whose cell is half outside, the
 ///         charge is divided by the half that is inside
-/// exact:  sum_g rho_g V_g = the charge of background and particles, to round-off
+/// exact:  sum_g rho_g V_g = the charge of background and particles, to round-off; in the
+///         energy-conserving scheme also their moment, sum_g rho_g V_g x_g, between walls
 /// source: [CIC-1]
 /// note:   The slide leaves out V_c; its S is a density, ours sums to 1 over the nodes.
 inline void deposit_charge(const std::vector<Particles>& species, const Grid& grid,
@@ -88,6 +113,7 @@ inline void deposit_charge(const std::vector<Particles>& species, const Grid& gr
                            Field& rho_g) {
     rho_g.setZero(grid.size());
     for (const Particles& particles : species) add_charge(particles, grid, scheme, scratch, rho_g);
+    if (scheme.energy_conserving) detail::move_ghosts_to_walls(grid, rho_g);
     common::fold_ghosts(grid, common::on_nodes, {1, 1}, rho_g.data());
     rho_g.array() += background;
 }

@@ -86,23 +86,27 @@ inline double surface_charge(double phi_wall, double phi_next, double rho_wall, 
     return (phi_wall - phi_next) / dx - 0.5 * dx * rho_wall;
 }
 
-/// Fills the places around the mesh with copies of the field, periodic ones or mirror images behind
-/// walls, so that gather_field stays the transpose of deposit_charge.
+/// Fills the places around the mesh with copies of the field, periodic ones or images behind walls, so
+/// that gather_field stays the transpose of deposit_charge: on nodes mirror images; on edges, where it is
+/// the difference of a potential with phi_-1 = 2 phi_0 - phi_1, the same field across the wall and the
+/// opposite one along it.
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
     const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;
-    const auto mirror = [&](const common::Axis& axis, bool half, const auto& copy) {
-        common::ghosts_along(axis, half, half ? -1 : 1, copy);
-    };
+    const int along = on_edges ? -1 : 1;
     for (long j = 0; j <= nz; ++j) {
-        mirror(grid.x, on_edges,
-               [&](long to, long from, int sign) { at(to, j).x = Real(sign) * at(from, j).x; });
-        mirror(grid.x, false, [&](long to, long from, int) { at(to, j).z = at(from, j).z; });
+        common::ghosts_along(grid.x, on_edges, 1,
+                             [&](long to, long from, int) { at(to, j).x = at(from, j).x; });
+        common::ghosts_along(grid.x, false, along, [&](long to, long from, int sign) {
+            at(to, j).z = Real(sign) * at(from, j).z;
+        });
     }
     for (long i = -1; i <= nx + 1; ++i) {
-        mirror(grid.z, false, [&](long to, long from, int) { at(i, to).x = at(i, from).x; });
-        mirror(grid.z, on_edges,
-               [&](long to, long from, int sign) { at(i, to).z = Real(sign) * at(i, from).z; });
+        common::ghosts_along(grid.z, false, along, [&](long to, long from, int sign) {
+            at(i, to).x = Real(sign) * at(i, from).x;
+        });
+        common::ghosts_along(grid.z, on_edges, 1,
+                             [&](long to, long from, int) { at(i, to).z = at(i, from).z; });
     }
 }
 

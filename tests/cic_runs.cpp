@@ -355,6 +355,55 @@ TEST_CASE("a sheath that has not settled is not measured and says what it needs"
     check_results(run("settled", "sheath", "time.end=1200"), 2);
 }
 
+TEST_CASE("a diode below the limit of Child and Langmuir has its field at the cathode" *
+          doctest::description("physics")) {
+    // J = 400 < (4/9) 2^(1/2) 100^(3/2); E^2 = E_0^2 + 8^(1/2) J phi^(1/2) with v = (2 phi)^(1/2), and
+    // the integral of d phi/E = 2 u du/E, u = phi^(1/2), is the length.
+    const double J = 400, potential = 100;
+    const auto length = [&](double E_0) {
+        double sum = 0;
+        const int parts = 20000;
+        for (int k = 0; k < parts; ++k) {
+            const double u = std::sqrt(potential) * (k + 0.5) / parts;
+            sum += 2 * u / std::sqrt(E_0 * E_0 + std::sqrt(8.0) * J * u);
+        }
+        return sum * std::sqrt(potential) / parts;
+    };
+    double low = 0, high = potential;
+    while (high - low > 1e-9) (length(0.5 * (low + high)) > 1 ? low : high) = 0.5 * (low + high);
+    const std::string file = case_file(R"([grid]
+cells_x = 60
+length_x = 1
+boundary_x = "wall"
+[boundary]
+particles_x_low = "source"
+potential_x_high = 100
+[time]
+dt = 0.0005
+end = 0.5
+[species.electrons]
+density = 0.64
+emission = 400
+emission_temperature = 1e-4
+particles_per_cell = 1
+loading = "random"
+)");
+    for (const std::string scheme : {"momentum", "energy"}) {
+        for (const std::string weighting : {"cic", "tsc"}) {
+            CAPTURE(scheme);
+            CAPTURE(weighting);
+            said(file, "method.scheme=" + scheme + " method.weighting=" + weighting);
+            const Run r = facts::finished_run(facts::folder_of_test() + "/told");
+            const auto& charge = r.column("charge_x_low");
+            double mean = 0;
+            const std::size_t half = charge.size() / 2;
+            for (std::size_t n = half; n < charge.size(); ++n)
+                mean += charge[n] / double(charge.size() - half);
+            CHECK(std::fabs(mean / -low - 1) <= 0.02);
+        }
+    }
+}
+
 TEST_CASE("a charged layer winds up at the diocotron rate" * doctest::description("physics")) {
     check_results(run("diocotron", "diocotron",
                       "time.end=600 grid.cells_x=64 grid.cells_z=96 "

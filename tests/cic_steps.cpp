@@ -261,25 +261,73 @@ TEST_CASE("all forces together vanish in the momentum scheme and not in the ener
 
 TEST_CASE("the force of the energy scheme is the gradient of the field energy") {
     for (const Mesh& m : meshes(true)) {
-        CAPTURE(m.name);
-        Particles cloud = scattered(m, 20, -0.4, 8);
-        const bool closed = m.grid.x.periodic && m.grid.z.periodic;
-        const double background = closed ? -mean_charge(m, cloud) : 0;
-        const auto energy = [&](const Particles& c) {
-            const Solved s = solve(m, {c}, background);
-            return field_energy(m.grid, s.rho_g, s.field);
-        };
-        const auto E = gathered(m, solve(m, {cloud}, background).field.E_g, cloud);
-        for (const std::size_t p : {0UL, 3UL, 8UL, 17UL}) {
-            for (std::size_t a = 0; a < (m.scheme.dimensions == 2 ? 2 : 1); ++a) {
-                auto& x = a == 0 ? cloud.x_p : cloud.z_p;
-                const double here = x[p], h = 1e-5;
-                x[p] = here + h;
-                const double after = energy(cloud);
-                x[p] = here - h;
-                const double before = energy(cloud);
-                x[p] = here;
-                CHECK(std::fabs(cloud.q_p * E[p][a] + (after - before) / (2 * h)) <= 2e-9);
+        for (const bool floating : {false, true}) {
+            const bool closed = m.grid.x.periodic && m.grid.z.periodic;
+            if (floating && m.grid.x.periodic == m.grid.z.periodic) continue;
+            CAPTURE(m.name);
+            CAPTURE(floating);
+            Particles cloud = scattered(m, 20, -0.4, 8);
+            const double background = closed ? -mean_charge(m, cloud) : 0;
+            const bool box = !m.grid.x.periodic && !m.grid.z.periodic;  // whose walls meet
+            Walls walls;
+            walls[x_low].potential = walls[z_low].potential = box ? 0 : 0.6;
+            walls[x_high].potential = walls[z_high].potential = box ? 0 : -0.3;
+            for (const WallName high : {x_high, z_high})
+                if (floating) walls[high] = {true, 0, 0.8};
+            // What batteries have given is no energy of the field.
+            const auto energy = [&](const Particles& c) {
+                const Solved s = solve(m, {c}, background, false, walls);
+                double sum = field_energy(m.grid, s.rho_g, s.field);
+                for (const WallName wall : {x_low, x_high, z_low, z_high}) {
+                    const bool along_x = wall == x_low || wall == x_high;
+                    if (!s.field.walls[wall].floating)
+                        sum -= walls[wall].potential * s.field.walls[wall].charge *
+                               (along_x ? m.grid.z : m.grid.x).length;
+                }
+                return sum;
+            };
+            const auto E =
+                gathered(m, solve(m, {cloud}, background, false, walls).field.E_g, cloud);
+            for (const std::size_t p : {0UL, 3UL, 5UL, 8UL, 10UL, 17UL}) {
+                for (std::size_t a = 0; a < (m.scheme.dimensions == 2 ? 2 : 1); ++a) {
+                    auto& x = a == 0 ? cloud.x_p : cloud.z_p;
+                    const double here = x[p], h = 1e-5;
+                    x[p] = here + h;
+                    const double after = energy(cloud);
+                    x[p] = here - h;
+                    const double before = energy(cloud);
+                    x[p] = here;
+                    CHECK(std::fabs(cloud.q_p * E[p][a] + (after - before) / (2 * h)) <= 2e-9);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a uniform field between walls is the same at every particle up to the walls") {
+    for (const bool energy : {false, true}) {
+        for (const Mesh& m : meshes(energy)) {
+            if (m.grid.x.periodic == m.grid.z.periodic) continue;
+            const bool along_x = !m.grid.x.periodic;
+            const common::Axis& axis = along_x ? m.grid.x : m.grid.z;
+            Particles s = scattered(m, 200, 0, 21);
+            (along_x ? s.x_p : s.z_p)[0] = axis.low;
+            (along_x ? s.x_p : s.z_p)[1] = axis.high();
+            const double E = 1.7;
+            for (const int floating : {0, 1, 2}) {  // walls at potentials; the upper one; both
+                CAPTURE(m.name);
+                CAPTURE(energy);
+                CAPTURE(floating);
+                Walls walls;
+                Wall &low = walls[along_x ? x_low : z_low],
+                     &high = walls[along_x ? x_high : z_high];
+                low = {floating > 1, 0.4, E};
+                high = {floating > 0, 0.4 - E * axis.length, -E};
+                double most = 0;
+                for (const auto& E_p : gathered(m, solve(m, {s}, 0, false, walls).field.E_g, s))
+                    most = worst({most, std::fabs(E_p[along_x ? 0 : 1] - E),
+                                  std::fabs(E_p[along_x ? 1 : 0])});
+                CHECK(most <= 1e-13);
             }
         }
     }
