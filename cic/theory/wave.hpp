@@ -241,10 +241,23 @@ inline std::string faster_mode(const Case& parameters, const Theory& theory) {
                     "the mode that is followed, or the run");
 }
 
+/// Amplitudes that a wave begins with.
+struct WaveStart {
+    double field = 0;        // without noise
+    double noise = 0;        // of random numbers
+    double later_noise = 0;  // that a quiet start comes to, where it is more than the perturbation
+};
+/// That noise starts the wave, and what to change.
+inline std::string begins_in_noise(double noise, double seed) {
+    return sentence("noise starts the wave: it begins with ", noise, ", and the seed is ", seed,
+                    ": raise the amplitude or particles_per_cell");
+}
+
 /// What a wave that is not as in theory is most likely due to, and what to change.
-/// in:     field, the amplitude of the wave without noise; noise of random numbers in it
-inline std::string likely_cause(const Case& parameters, const Theory& theory, double field,
-                                double noise) {
+/// in:     deviation of the frequency from theory, relative; 0 where the rate is asked about
+inline std::string likely_cause(const Case& parameters, const Theory& theory,
+                                const WaveStart& start, double deviation = 0) {
+    const double field = start.field, noise = start.noise;
     const double by_step = change_by_leapfrog(parameters, theory),
                  k_dx =
                      wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
@@ -272,9 +285,13 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
                         "or take loading = \"quiet\"");
     if (parameters.model != "mesh" && by_step > tolerance && (!by_mesh || by_step > slower))
         return leapfrog;
-    const std::string bouncing = likely_bouncing(parameters, theory, field);
-    if (!bouncing.empty()) return bouncing;
-    if (const std::string faster = faster_mode(parameters, theory); !faster.empty()) return faster;
+    // The mesh lowers a frequency whatever particles do beside.
+    if (!(by_mesh && deviation < 0 && deviation > -2 * slower)) {
+        const std::string bouncing = likely_bouncing(parameters, theory, field);
+        if (!bouncing.empty()) return bouncing;
+        const std::string faster = faster_mode(parameters, theory);
+        if (!faster.empty()) return faster;
+    }
     if (by_mesh)
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
                         ", and the mesh changes the wave by 1 - cos(k dx/2)",
@@ -298,6 +315,7 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory, do
         return "on the energy-conserving mesh a cold wave whose particles go from cell to cell "
                "feeds others: lower the amplitude, or give it a temperature with a Debye length "
                "of a third of a cell and loading = \"quiet\"";
+    if (start.later_noise > 0) return begins_in_noise(start.later_noise, theory.seed);
     if (noise > 0)
         return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
                "loading = \"quiet\"";
@@ -378,7 +396,6 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     const std::string covers = sentence(
         "another wave of this mode grows, with ", fastest.imag(), " at omega = ", fastest.real(),
         ", and covers this one: take theory.near = ", fastest.real());
-    summary.hint(covered ? covers : likely_cause(parameters, theory, field, noise));
     const std::string bouncing = likely_bouncing(parameters, theory, field);
     if (!bouncing.empty()) search.faded = bouncing;
     search.begin = grows ? 1 / growth : 2 * pi / frequency;
@@ -393,34 +410,55 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
             2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
         seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
     }
-    const std::string told = grows ? "" : other_wave(parameters, theory, seen);
-    if (!told.empty()) summary.hint(told);
-    const double level = onset_field(parameters, theory), folds = growth * (seen.end - seen.begin);
+    const double level = onset_field(parameters, theory), length = seen.end - seen.begin,
+                 folds = growth * length, periods = frequency * length / (2 * pi);
     double early = noise;
     for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
         early = std::max(early, amplitude[n]);
+    // What the perturbation has by search.begin, a growth time, without noise.
+    const double own = std::max(amplitude.front(), std::exp(1.0) * theory.seed),
+                 later_noise = noise_field(parameters, theory);
+    const bool noisy = grows && later_noise > 0 && early > 1.05 * own;
+    const WaveStart begin{field, noise, noisy && early > 2 * own ? early : 0};
+    const std::string told = grows ? "" : other_wave(parameters, theory, seen),
+                      cause = !told.empty() ? told
+                              : covered     ? covers
+                                            : likely_cause(parameters, theory, begin);
+    summary.hint(cause);
+    // What begins above the onset has saturated before it can be measured, or noise has covered it.
+    const double begins = std::max(noise, amplitude.front()),
+                 too_fast = seen.growth() - 3 * seen.growth_error() - std::max(growth, 0.0);
+    const bool in_noise = noisy && noise < level && std::min(early, later_noise) > level &&
+                          !(seen.found && too_fast > 0);
     const std::string too_high =
-        sentence("the perturbation begins with ", early, ", above the field of the onset, ", level,
-                 ", and only ", theory.seed, " of it is the growing wave: lower the amplitude ",
-                 early / level, " times or more");
-    // What begins above the onset has saturated before it can be measured.
-    const double begins = std::max(noise, amplitude.front());
-    const std::string saturated =
-        !grows || !(begins > level) ||
-                std::fabs(seen.growth() - growth) <=
-                    seen.growth_error() + parameters.growth_tolerance * growth
-            ? ""
+        in_noise ? sentence("the noise of particles comes to ", early,
+                            ", above the field of the onset, ", level,
+                            ": raise particles_per_cell, or follow a mode that grows faster")
         : noise < level && theory.seed > 0
-            ? too_high
+            ? sentence("the perturbation begins with ", early, ", above the field of the onset, ",
+                       level, ", and only ", theory.seed,
+                       " of it is the growing wave: lower the amplitude ", early / level,
+                       " times or more")
             : sentence("noise begins with ", begins, ", above the field of the onset, ", level,
                        ": take loading = \"quiet\", or raise particles_per_cell");
-    if (!saturated.empty())
-        seen.found = false, seen.reason = saturated, seen.over = false;
-    else if (grows && seen.found && folds < 1 && likely_driven_by_mesh(parameters).empty())
-        summary.hint(sentence("the wave grows only by exp(", folds, ") in the ",
-                              frequency * (seen.end - seen.begin) / (2 * pi),
-                              " periods that are measured at a time: raise "
-                              "theory.growth_tolerance, or look at the onset"));
+    // Far from the frequency of theory, and growing no faster, is another wave, or noise.
+    const double off =
+        theory.mirrored ? seen.frequency() - frequency : seen.omega.real() - theory.omega.real();
+    const bool grows_right = std::fabs(seen.growth() - growth) <=
+                             seen.growth_error() + parameters.growth_tolerance * growth,
+               elsewhere = seen.found && !(too_fast > 0) &&
+                           std::fabs(off) > 0.3 * std::abs(theory.omega) + seen.frequency_error();
+    if (grows && (begins > level || in_noise) &&
+        (!grows_right || (elsewhere && seen.growth_error() > growth)))
+        seen.found = false, seen.reason = too_high, seen.over = false;
+    else if (elsewhere && periods < search.periods && std::fabs(folds) < search.e_foldings)
+        seen.found = false, seen.over = false,
+        seen.reason = sentence("cannot be measured, because the wave of theory has ", periods,
+                               " periods and ", std::fabs(folds), " e-foldings, below ",
+                               search.periods, " and ", search.e_foldings, ", ", seen.window,
+                               ", and omega = ", seen.omega.real(),
+                               " is seen in its place: raise time.end, and the amplitude or "
+                               "particles_per_cell where noise hides it");
     const std::string where = theory.source + "; measured " + seen.window;
     const auto report = [&](const std::string& name, double value, double error, double expected,
                             double tolerance) {
@@ -439,30 +477,37 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                             where);
         summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
     }
+    // The frequency has a cause of its own, and its single wave has its direction, too.
+    const auto report_frequency = [&] {
+        const double deviation = off / (theory.mirrored ? frequency : theory.omega.real());
+        if (seen.found && told.empty() && !covered &&
+            deviation < -parameters.frequency_tolerance - seen.frequency_error() / frequency)
+            summary.hint(likely_cause(parameters, theory, begin, deviation));
+        else
+            summary.hint(cause);
+        report("omega_over_theory", theory.mirrored ? seen.frequency() : seen.omega.real(),
+               seen.frequency_error(), theory.mirrored ? frequency : theory.omega.real(),
+               parameters.frequency_tolerance);
+        summary.hint(cause);
+    };
     if (grows) {
+        if (seen.found && folds < 1 && likely_driven_by_mesh(parameters).empty())
+            summary.hint(sentence("the wave grows only by exp(", folds, ") in the ", periods,
+                                  " periods that are measured at a time: raise "
+                                  "theory.growth_tolerance, or look at the onset"));
         report("growth_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
-        if (frequency > 0.1 * growth)
-            report("omega_over_theory", seen.omega.real(), seen.frequency_error(),
-                   theory.omega.real(), parameters.frequency_tolerance);
+        if (frequency > 0.1 * growth) report_frequency();
         const double allowed = 0.5 / growth, at = common::time_at_level(times, amplitude, level);
         if (onset == 0 || times.back() <= onset + allowed) return;
-        // What the perturbation has by search.begin, a growth time, without noise.
-        const double own = std::max(amplitude.front(), std::exp(1.0) * theory.seed),
-                     reached = std::isnan(at) ? times.back() : at;
-        const bool grows_right =
-            seen.found && std::fabs(seen.growth() - growth) <=
-                              seen.growth_error() + parameters.growth_tolerance * growth;
-        const bool quiet_noise = noise_field(parameters, theory) > 0 && early > 1.05 * own &&
-                                 grows_right && std::fabs(reached - onset) > allowed;
-        if (noise > 0.3 * theory.seed || quiet_noise)
-            summary.not_measured("onset", sentence("noise starts the wave: it begins with ", early,
-                                                   ", and the seed is ", theory.seed,
-                                                   ": raise the amplitude or particles_per_cell"));
+        const double reached = std::isnan(at) ? times.back() : at;
+        const bool late = std::fabs(reached - onset) > allowed;
+        if (noise > 0.3 * theory.seed || (noisy && seen.found && grows_right && late))
+            summary.not_measured("onset", begins_in_noise(early, theory.seed));
         else if (early > level)
             summary.not_measured("onset", too_high);
         else if (const std::string faster = faster_mode(parameters, theory);
-                 std::fabs(reached - onset) > allowed && !faster.empty())
+                 late && !faster.empty())
             summary.not_measured("onset", faster);
         else
             summary.result("onset", reached, "1/omega_p", onset, allowed, onset_meaning);
@@ -512,10 +557,7 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                              "theory.mode_x, or a colder plasma");
         return;
     }
-    // A single wave has its direction, too.
-    report("omega_over_theory", theory.mirrored ? seen.frequency() : seen.omega.real(),
-           seen.frequency_error(), theory.mirrored ? frequency : theory.omega.real(),
-           parameters.frequency_tolerance);
+    report_frequency();
     if (damped)
         report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
                parameters.growth_tolerance);
