@@ -23,7 +23,11 @@ off(n) = abs(far(0)) > 2.4 ? 99 : far(0)
 edge(n) = strcol(5) ne '-' && abs(far(0)) > 2.4 ? within(far(0)) : 99
 color(n) = strcol(6) eq 'PASS' ? 0x009E73 : 0xD55E00
 bar(n) = strcol(3) eq '-' || strcol(5) eq '-' ? 0 : within(column(3) / column(5))
-if (nothing) { set label 2 'no results yet' at 0, 1 center; plot NaN } else {
+if (nothing) {
+    set label 2 (entry('status') eq '0' ? 'the run is complete, and nothing of it is compared with theory' : 'no results yet') at screen 0.5, first 1 center
+    unset object 1; unset arrow 1; unset border; unset xtics; unset xlabel
+    plot NaN
+} else {
     plot '< '.table skip 1 using (off(0)):($0 + 1):(bar(0)):(color(0)) with xerrorbars pt 7 ps 1.3 lw 2 lc rgb variable, \
          '' skip 1 using (edge(0)):($0 + 1):(far(0) < 0 ? '◀' : '▶'):(color(0)) with labels font ',17' tc rgb variable
 }
