@@ -97,6 +97,19 @@ inline void move_ghosts_to_walls(const Grid& grid, Field& rho_g) {
     }
 }
 
+// The uniform background as the clouds of the energy-conserving scheme have it, so that with as many of
+// opposite charge it is neutral: with tsc 1 + 1/12 on a wall and 1 - 1/24 on the node inside.
+inline void add_background_as_clouds(const Grid& grid, double background, Field& rho_g) {
+    const auto part = [](const common::Axis& axis, long i) {
+        if (axis.periodic) return 1.0;
+        const auto of_wall = [](long away) { return away == 0 ? 2 : away == 1 ? -1 : 0; };
+        return 1 + (of_wall(i) + of_wall(axis.cells - i)) / 24.0;
+    };
+    for (long j = -1; j <= grid.z.cells + 1; ++j)
+        for (long i = -1; i <= grid.x.cells + 1; ++i)
+            rho_g[grid.index(i, j)] += background * part(grid.x, i) * part(grid.z, j);
+}
+
 }  // namespace detail
 
 /// Charge density of all particles and of the fixed background.
@@ -115,7 +128,10 @@ inline void deposit_charge(const std::vector<Particles>& species, const Grid& gr
     for (const Particles& particles : species) add_charge(particles, grid, scheme, scratch, rho_g);
     if (scheme.energy_conserving) detail::move_ghosts_to_walls(grid, rho_g);
     common::fold_ghosts(grid, common::on_nodes, {1, 1}, rho_g.data());
-    rho_g.array() += background;
+    if (scheme.energy_conserving && scheme.order == 2)
+        detail::add_background_as_clouds(grid, background, rho_g);
+    else
+        rho_g.array() += background;
 }
 
 }  // namespace cic
