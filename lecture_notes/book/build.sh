@@ -78,7 +78,7 @@ sed -n 's|^@[a-z]*{\(.*\),$|\1|p; s|^  doi = {\(.*\)}$|doi \1|p' "$book/referenc
 for method in 1 2 3 4a 4b 5 6; do
     note=$(echo lecture_notes/0"$method"_*.md)
     { printf '# Exercises of chapter %s\n\n' "$method"
-      printf 'To [%s](../%s). Answers are hidden: predict, run, then look.\n' \
+      printf 'To [%s](../%s). Answers are hidden: predict, run, then look. A second run of a case needs a folder of its own, `--out out/NAME`.\n' \
           "$(sed -n '1s/^# *//p' "$note")" "$(basename "$note")"
       for question in $(ls lecture_notes/exercises/"$method"-*.md | sort -t- -k2n); do
           id=$(basename "$question" .md)
