@@ -17,7 +17,8 @@
 #   exercise.sh run ID             the question, the runs, and whether their numbers are right
 #   exercise.sh answer ID VALUE    is the answer right? Its value is not shown
 #   exercise.sh test ID            the runs as a test; with a patch in a copy of the sources
-#   exercise.sh check              every exercise is complete and has a solution, and vice versa
+#   exercise.sh check              every exercise is complete and has a solution, and vice versa; its code is that of
+#                                  the patch, and no two runs that it prints go to one folder
 set -eu
 export LC_ALL=C.UTF-8
 cd "$(dirname "$0")/.."
@@ -106,6 +107,17 @@ holds() {
     }'
 }
 
+# Is the answer the expected value, rounded to as many digits as the answer has?
+is_rounded() {
+    awk -v value="$1" -v expected="$2" 'BEGIN {
+        digits = value
+        sub(/[eE].*/, "", digits)
+        gsub(/[-+.]/, "", digits)
+        sub(/^0*/, "", digits)
+        exit !(digits != "" && sprintf("%.*e", length(digits) - 1, expected) + 0 == value + 0)
+    }'
+}
+
 asks_for() { awk '/^```exercise/ { exit } /^Your answer:/' "$question" | grep -q "$1"; }
 
 # The answer without blanks around it; what is no number is refused.
@@ -191,6 +203,32 @@ copy_with_patch() {
     done
 }
 
+# The folders of the runs that the text of an exercise prints, the default ones, too.
+folders_shown() {
+    awk '
+    /^```exercise/ { exit }
+    /^    build\/[a-z]/ || /^    mpirun / { on = 1; line = "" }
+    on {
+        line = line " " $0
+        if (sub(/\\$/, "", line)) next
+        on = 0
+        count = split(line, word, " ")
+        program = name = folder = ""
+        for (k = 1; k <= count; k++) {
+            if (program == "" && word[k] ~ /^build\//) { program = word[k]; sub(/.*\//, "", program) }
+            else if (name == "" && word[k] ~ /[.]toml$/) { name = word[k]; sub(/.*\//, "", name); sub(/[.]toml$/, "", name) }
+            else if (word[k] == "--out") folder = word[k + 1]
+            else if (word[k] == "--dry-run" || word[k] == "--help") next
+        }
+        print folder == "" ? "out/" program "/" (name == "" ? "the default case" : name) : folder
+    }' "$question"
+}
+
+# The lines of code that the text shows: indented, and no commands.
+code_shown() {
+    awk '/^```exercise/ { exit } /^    [a-z]/ && !/^    (build\/|make |mpirun )/ { print }' "$question" | sed 's/^ *//'
+}
+
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 trap 'exit 130' HUP INT TERM
@@ -240,8 +278,10 @@ answer:3)
         echo "not right; the exponent is asked for, as -2 for 1e-2"
     else
         holds "$value" ">=" "${expected%% *}" && side=large || side=small
-        if holds "$value" = "${expected%% *} +- 2%"; then
+        if is_rounded "$value" "${expected%% *}"; then
             echo "not right, but near; give more digits: it is too $side"
+        elif holds "$value" = "${expected%% *} +- 2%"; then
+            echo "not right: near, but beyond the tolerance; too $side"
         else
             echo "not right; too $side"
         fi
@@ -293,14 +333,19 @@ check:1)
             grep -q "^$name:" "$scratch/runs" || echo "$id: there is no run $name"
         done > "$scratch/strange"
         [ ! -s "$scratch/strange" ] || complain "$(cat "$scratch/strange")"
+        twice=$(folders_shown | sort | uniq -d)
+        [ -z "$twice" ] || complain "$question: two of the runs that it prints go to $twice: give them --out"
         if [ -n "$patch" ]; then
             applies . "$PWD/$patch" --check > "$scratch/words" || complain "$patch: $(cat "$scratch/words")"
+            sed -n 's/^[ +] *//p' "$patch" > "$scratch/new"
+            code_shown | grep -vxF -f "$scratch/new" > "$scratch/other" &&
+                complain "$question: not a line of $patch: $(cat "$scratch/other")"
         fi
     done
     exit "$status"
     ;;
 *)
-    sed -n 's/^# \{0,1\}//; 2,20p' "$0" >&2
+    sed -n 's/^# \{0,1\}//; 2,21p' "$0" >&2
     exit 2
     ;;
 esac

@@ -24,11 +24,14 @@ make_answer() {  # the same by make, which says itself how it ended
 for right in 0.9239 .9239 9.239e-1 +0.9239 ' 0.9239 '; do answer 1-3 "$right" 0 "right (within 0.022 %)"; done
 answer 3-8 1.4e-6 0 "right (within 35 %)"
 answer 2-4 16 0 right
-answer 1-3 0.9 1 "not right; too small"
+answer 1-3 0.9 1 "not right, but near; give more digits: it is too small"
+answer 1-3 0.8 1 "not right; too small"
 answer 1-3 -0.9239 1 "not right; too small"
 answer 1-3 1 1 "not right; too large"
 answer 1-3 0.92 1 "not right, but near; give more digits: it is too small"
-answer 1-3 0.93 1 "not right, but near; give more digits: it is too large"
+answer 1-3 0.93 1 "not right: near, but beyond the tolerance; too large"
+answer 1-1 0.9952 1 "not right: near, but beyond the tolerance; too large"
+answer 6-10 0.7071 1 "not right: near, but beyond the tolerance; too small"
 answer 4b-6 1e-4 1 "not right; the exponent is asked for, as -2 for 1e-2"
 answer 4b-6 -6 1 "not right; too small"
 
