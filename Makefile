@@ -75,7 +75,7 @@ need = @command -v $(1) >/dev/null || { echo "'$(1)' is not installed: run 'make
 programs  := $(basename $(notdir $(mains)))
 bench_programs := $(benches:%.cpp=$(BUILD)/benches/%)
 tests     := $(basename $(notdir $(wildcard tests/*.cpp)))
-shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp,$(wildcard common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp) $(if $(MPI),common/ranks.cpp))
+shared    := $(patsubst %.cpp,$(objects)/%.o,$(filter-out %/formula.cpp %/openpmd.cpp %/ranks.cpp,$(wildcard common/*.cpp common/*/*.cpp)) $(if $(TRAP),tests/support/trap_invalid.cpp) $(if $(MPI),common/ranks.cpp))
 # What the theory of a method compiles by itself. From an archive the linker takes what a program calls: only who
 # reads formulas needs muParser.
 theory_of  = $(patsubst %.cpp,$(objects)/%.o,$(wildcard $(1)/theory/*.cpp))
@@ -655,7 +655,7 @@ web_link  := -O3 -msimd128 -fexceptions -Wl,--wrap=_ZN6common3Run12not_finishedE
 web_gsl   := $(addprefix cdf/,gauss gaussinv tdist tdistinv) randist/tdist fft/fft fit/linear err/error err/stream err/strerror sys/infnan sys/pow_int \
     $(addprefix specfunc/,bessel_I0 beta elementary erfc exp expint gamma gamma_inc log psi trig zeta)
 web_muparser := muParser muParserBase muParserBytecode muParserCallback muParserError muParserTokenReader
-web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp,$(wildcard common/run/*.cpp */theory/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
+web_common := $(patsubst %.cpp,$(web)/%.o,$(filter-out %/openpmd.cpp %/ranks.cpp,$(wildcard common/*.cpp common/run/*.cpp */theory/*.cpp)) $(page)/glue.cpp) $(web)/libraries.a
 # Emscripten looks for modules of node where Debian puts them.
 emscripten := NODE_PATH=/usr/share/nodejs em++
 
@@ -707,7 +707,7 @@ out/web/index.html: $(page)/head.html $(page)/index.html
 out/web/%: $(page)/%
 	@mkdir -p $(@D)
 	cp $< $@
--include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/run/*.cpp */theory/*.cpp) $(page)/glue.cpp)
+-include $(patsubst %.cpp,$(web)/%.d,$(mains) $(wildcard common/*.cpp common/run/*.cpp */theory/*.cpp) $(page)/glue.cpp)
 
 # In a real browser, without a window: every page, beside the native programs.
 test-web: web all

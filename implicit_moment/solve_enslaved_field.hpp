@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/least_squares.hpp"
 #include "common/run/sentence.hpp"
 #include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/newton_krylov/enslave_particles.hpp"
@@ -28,7 +29,7 @@ class Acceleration {
         E += f;
         const Eigen::Index known = std::min<Eigen::Index>(count_, depth);
         if (known == 0) return;
-        const Eigen::VectorXd gamma = df_.leftCols(known).colPivHouseholderQr().solve(f);
+        const Eigen::VectorXd gamma = common::least_squares(df_.leftCols(known), f);
         E -= (dE_.leftCols(known) + df_.leftCols(known)) * gamma;
     }
 

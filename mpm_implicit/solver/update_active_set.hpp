@@ -9,9 +9,9 @@
 // much, by up to a third of the largest impulse.
 #pragma once
 
-#include <Eigen/Dense>
 #include <cmath>
 
+#include "common/least_squares.hpp"
 #include "mpm_implicit/solver/active_set.hpp"
 
 namespace mpm_implicit {
@@ -49,7 +49,7 @@ inline void extrapolate_friction(bool same, ActiveSet& set) {
             dg.col(j) = set.targets[j + 1] - set.targets[j];
             df.col(j) = dg.col(j) - (set.frictions[j + 1] - set.frictions[j]);
         }
-        next -= dg * df.colPivHouseholderQr().solve(g - x);
+        next -= dg * common::least_squares(df, g - x);
     }
     for (std::size_t k = 0; k < count; ++k) {
         if (set.list.pairs[k].state != ContactState::slip) continue;

@@ -1,0 +1,8 @@
+#include "common/least_squares.hpp"
+
+#include <Eigen/QR>
+
+Eigen::VectorXd common::least_squares(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                                      const Eigen::VectorXd& b) {
+    return A.colPivHouseholderQr().solve(b);
+}
