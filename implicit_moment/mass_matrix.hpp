@@ -240,9 +240,7 @@ inline void deposit_mass_matrix(const std::vector<Particles>& species, const Gri
         }
     });
     gather_rows(grid, mass.of_ranks, rows_of_vector(grid, mass.J_hat));
-    for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
-                            mass.J_hat.all.data() + long(a) * grid.size());
+    fold_ghosts(grid, felt(grid), mass.J_hat.all.data());
 }
 
 }  // namespace implicit_moment

@@ -164,7 +164,6 @@ inline LinearVelocity<Real> linear_mean_velocity(const Velocity<Real>& u,
 
 /// The dynamics of a species: what u_p means, its energy, and its mean velocity in a step.
 struct Newtonian {
-    static constexpr bool is_relativistic = false;
     // By component: a copy of the whole goes through memory in pieces.
     template <class Real>
     static Velocity<Real> velocity(const Velocity<Real>& u) {
@@ -187,7 +186,6 @@ struct Newtonian {
     }
 };
 struct Relativistic {
-    static constexpr bool is_relativistic = true;
     template <class Real>
     static Velocity<Real> velocity(const Velocity<Real>& u) {
         const Real per_gamma = inverse_gamma(u, 1 / (c * c));

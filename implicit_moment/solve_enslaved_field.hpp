@@ -75,15 +75,15 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
     detail::Acceleration faster;
     constexpr double round_off = 1e-7;
     double best = 2;
-    int best_turn = 0;
+    int best_iteration = 0;
     MoverSettings follow = settings;
-    for (int turn = 0;; ++turn) {
+    for (int iteration = 0;; ++iteration) {
         // B at the same level: B^n - a curl E.
         curl_of_electric(grid, field.E_theta.all.data(), enslaved.curl.all.data());
         B_theta.all = field.B.all - a * enslaved.curl.all;
         fill_B_ghosts(grid, B_theta);
         interleave_field(grid, smoothing, field.E_theta, B_theta, scratch, interleaved);
-        follow_field(interleaved, grid, dt, follow, species, turn, enslaved);
+        follow_field(interleaved, grid, dt, follow, species, iteration, enslaved);
         smooth(grid, felt(grid), smoothing, enslaved.J.all.data(), solver.scratch);
 
         // What is left: source - E + a curl (B_theta - B^n) - 4 pi theta dt J.
@@ -95,9 +95,9 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         report.residual = scale > 0 ? common::safe_norm(left.all) / scale : 0;
         if (report.residual <= goal) break;
         // Round-off: sums of currents that cancel leave more than the goal.
-        if (report.residual < 0.5 * best) best = report.residual, best_turn = turn;
-        if (turn >= best_turn + 6 && report.residual <= round_off) break;
-        if (turn == 100 || !std::isfinite(report.residual))
+        if (report.residual < 0.5 * best) best = report.residual, best_iteration = iteration;
+        if (iteration >= best_iteration + 6 && report.residual <= round_off) break;
+        if (iteration == 100 || !std::isfinite(report.residual))
             common::fail("field and particles did not converge together (relative residual ",
                          report.residual, "); reduce time.dt");
         follow.tolerance = std::min(settings.tolerance, std::max(1e-14, 0.1 * report.residual));

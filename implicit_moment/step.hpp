@@ -10,7 +10,7 @@
 #include "implicit_moment/advance_field.hpp"
 #include "implicit_moment/deposit_moments.hpp"
 #include "implicit_moment/field/interleaved_field.hpp"
-#include "implicit_moment/kick_and_fly.hpp"
+#include "implicit_moment/kick_and_drift.hpp"
 #include "implicit_moment/move_particles.hpp"
 #include "implicit_moment/solve_enslaved_field.hpp"
 #include "implicit_moment/solve_field.hpp"
@@ -72,9 +72,9 @@ inline std::vector<Particles> copy_if_relativistic(const std::vector<Particles>&
 }
 
 /// Takes back a kick, whose field is the next guess. errors: NumericalError after twenty turns
-inline void take_back_kick(const std::vector<Particles>& before, int turn,
+inline void take_back_kick(const std::vector<Particles>& before, int iteration,
                            std::vector<Particles>& species) {
-    if (turn == 20)
+    if (iteration == 20)
         common::fail(
             "the field takes more energy from relativistic particles than they have; reduce "
             "time.dt");
@@ -91,13 +91,13 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
                                   std::vector<Particles>& particles, FieldState& field,
                                   Clock&& clock = {}) {
     // [mass_matrix_step]
-    fly(grid, 0.5 * dt, particles);  // to x*
+    drift(grid, 0.5 * dt, particles);  // to x*
     clock.lap("mover");
     sort_particles(grid, scratch.sort, particles);
     clock.lap("sort");
     const std::vector<Particles> before = copy_if_relativistic(particles);
     FieldReport solved;
-    for (int turn = 0;; ++turn) {  // once, unless relativistic particles nearly stop
+    for (int iteration = 0;; ++iteration) {  // once, unless relativistic particles nearly stop
         interleave_guess(grid, particles, field.E_theta, scratch.B_push, scratch);
         deposit_mass_matrix(particles, grid, scratch.B_push, scratch.guess, dt,
                             scratch.solver.mass);  // particles -> grid
@@ -109,9 +109,9 @@ FieldReport take_mass_matrix_step(const Grid& grid, double dt, StepScratch& scra
         clock.lap("field");
         if (kick_particles(scratch.field, scratch.guess, grid, dt, particles))
             break;  // grid -> particles
-        take_back_kick(before, turn, particles);
+        take_back_kick(before, iteration, particles);
     }
-    fly(grid, 0.5 * dt, particles);  // from x*
+    drift(grid, 0.5 * dt, particles);  // from x*
     clock.lap("mover");
     advance_field(scratch.solver, dt, field);  // [IMM-10]
     clock.lap("field");
@@ -128,11 +128,11 @@ FieldReport take_enslaved_step(const Grid& grid, double dt, const MoverSettings&
                                StepScratch& scratch, std::vector<Particles>& particles,
                                FieldState& field, Clock&& clock = {}) {
     // [enslaved_step]
-    fly(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
+    drift(grid, 0.5 * dt, particles);  // to x* and back: there the response is found
     sort_particles(grid, scratch.sort, particles);
     interleave_guess(grid, particles, field.E_theta, field.B, scratch);
     deposit_mass_matrix(particles, grid, field.B, scratch.guess, dt, scratch.solver.mass);
-    fly(grid, -0.5 * dt, particles);
+    drift(grid, -0.5 * dt, particles);
     clock.lap("mass");
     const FieldReport solved =
         solve_enslaved_field(scratch.solver, dt, mover, particles, field, scratch.B_push,

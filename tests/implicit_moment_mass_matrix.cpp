@@ -101,9 +101,7 @@ VectorField current_of(const Grid& grid, const std::vector<Particles>& species,
             }
         }
     }
-    for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
-                            J.all.data() + long(a) * grid.size());
+    fold_ghosts(grid, felt(grid), J.all.data());
     return J;
 }
 
@@ -211,14 +209,14 @@ TEST_CASE("a flight and the flight back leave particles where they were") {
         std::vector<Particles> there{anywhere(grid, 300, 1, random)};
         const std::vector<Particles> start = there;
         for (const double time : {0.3, 20.0}) {
-            fly(grid, time, there);
+            drift(grid, time, there);
             for (std::size_t p = 0; p < there[0].x_p.size(); ++p) {
                 CHECK(there[0].x_p[p] >= grid.x.low);
                 CHECK(there[0].x_p[p] <= grid.x.high());
                 CHECK(there[0].z_p[p] >= grid.z.low);
                 CHECK(there[0].z_p[p] <= grid.z.high());
             }
-            fly(grid, -time, there);
+            drift(grid, -time, there);
             // On the wall itself a velocity may be that before or after the reflection.
             for (std::size_t p = 0; p < start[0].x_p.size(); ++p) {
                 CHECK(apart(grid.x, there[0].x_p[p], start[0].x_p[p]) <= 1e-13);
@@ -241,9 +239,9 @@ TEST_CASE("a flight over more than 1000 boxes is refused") {
                 }
                 for (auto* species : {&along_x, &along_z}) {
                     if (boxes == 999)
-                        CHECK_NOTHROW(fly(grid, 1, *species));
+                        CHECK_NOTHROW(drift(grid, 1, *species));
                     else
-                        CHECK_THROWS_AS(fly(grid, 1, *species), common::NumericalError);
+                        CHECK_THROWS_AS(drift(grid, 1, *species), common::NumericalError);
                 }
             }
 }

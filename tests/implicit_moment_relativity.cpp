@@ -102,10 +102,10 @@ TEST_CASE("the E x B drift is exact at any gamma and any step") {
         const InterleavedField push = uniform(grid, E, B);
         std::vector<Particles> flown{start}, moved{start};
         move_particles(push, grid, dt, tight, moved);
-        fly(grid, 0.5 * dt, flown);
+        drift(grid, 0.5 * dt, flown);
         sort(grid, flown[0]);
         kick_particles(push, push, grid, dt, flown);
-        fly(grid, 0.5 * dt, flown);
+        drift(grid, 0.5 * dt, flown);
         for (const Particles& s : {moved[0], flown[0]}) {
             CHECK((velocity(s, 0) - factor * v).norm() <= 1e-13);
             CHECK(apart(grid.x, s.x_p[0], -0.7 + dt * v[0]) <= 1e-12);
@@ -131,10 +131,10 @@ TEST_CASE(
             std::vector<Particles> s{start};
             for (double t = 0; t < end - 0.5 * dt; t += dt) {
                 if (flies) {
-                    fly(grid, 0.5 * dt, s);
+                    drift(grid, 0.5 * dt, s);
                     sort(grid, s[0]);
                     kick_particles(push, push, grid, dt, s);
-                    fly(grid, 0.5 * dt, s);
+                    drift(grid, 0.5 * dt, s);
                 } else {
                     move_particles(push, grid, dt, tight, s);
                 }

@@ -235,10 +235,7 @@ inline void move_particles(const InterleavedField& field, const Grid& grid, doub
     if (!species.empty())
         gather_rows(grid, rows_of(species.front().of_ranks, nodes_z(grid)),
                     rows_of_vector(grid, J));
-    for (std::size_t a = 0; a < 3; ++a) {
-        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
-                            J.all.data() + a * grid.size());
-    }
+    fold_ghosts(grid, felt(grid), J.all.data());
     smooth(grid, felt(grid), smoothing, J.all.data(), scratch.smoothed);
 }
 

@@ -72,8 +72,7 @@ inline void apply_mass_matrix(const Grid& grid, MassMatrix& mass, const double* 
         },
         detail::offsets * size);
     gather_rows(grid, mass.of_ranks, {{J, stride}, {J + size, stride}, {J + 2 * size, stride}});
-    for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a], J + long(a) * size);
+    fold_ghosts(grid, felt(grid), J);
 }
 
 }  // namespace implicit_moment

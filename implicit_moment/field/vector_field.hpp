@@ -87,6 +87,12 @@ inline void fill_ghosts(const Grid& grid, const VectorKind& kind, VectorField& f
     fill_ghosts(grid, kind, f.all.data());
 }
 
+/// Adds what was deposited on the ghosts of all three components to the points that they stand for.
+inline void fold_ghosts(const Grid& grid, const VectorKind& kind, double* all) {
+    for (std::size_t a = 0; a < 3; ++a)
+        common::fold_ghosts(grid, kind.place[a], kind.parity[a], all + long(a) * grid.size());
+}
+
 /// Fills the ghosts of B itself. What crosses a conducting wall is frozen into it: B_n keeps its values
 /// there, and behind the wall it goes on odd about them, so that div B = 0 holds there as well.
 inline void fill_B_ghosts(const Grid& grid, VectorField& B) {

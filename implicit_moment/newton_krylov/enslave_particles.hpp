@@ -41,7 +41,7 @@ struct EnslavedParticles {
     explicit EnslavedParticles(const Grid& grid) : J(grid), curl(grid) {}
 };
 
-inline constexpr int free_turns = 4;  // after which a path that meets a wall stays as it is
+inline constexpr int free_iterations = 4;  // after which a path that meets a wall stays as it is
 
 /// Ends the run where particles of a species have no path. errors: NumericalError
 inline void refuse_lost(const Particles& s, double lost) {
@@ -58,7 +58,7 @@ inline void refuse_lost(const Particles& s, double lost) {
 /// errors: NumericalError where a path has no number, or goes through more than longest_path cells
 inline void follow_field(const InterleavedField& field, const Grid& grid, double dt,
                          const MoverSettings& settings, const std::vector<Particles>& species,
-                         int turn, EnslavedParticles& enslaved) {
+                         int iteration, EnslavedParticles& enslaved) {
     const long stride = grid.stride(), size = grid.size();
     enslaved.J_of_block.assign(std::size_t(common::block_count * 3 * size), 0);
     for (std::size_t k = 0; k < species.size(); ++k) {
@@ -75,8 +75,8 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
                 Velocity<double>& vbar = enslaved.vbar[k][std::size_t(p)];
                 if (finds && !with_dynamics(s, [&](auto dynamics) {
                         return detail::find_path(dynamics, grid, field, dt, settings, half_kick,
-                                                 s.x_p[p], s.z_p[p], u, turn < free_turns, vbar,
-                                                 enslaved.state[k][std::size_t(p)]);
+                                                 s.x_p[p], s.z_p[p], u, iteration < free_iterations,
+                                                 vbar, enslaved.state[k][std::size_t(p)]);
                     })) {
                     ++lost[std::size_t(block)];
                     continue;
@@ -119,9 +119,7 @@ inline void follow_field(const InterleavedField& field, const Grid& grid, double
     for (long block = 0; block < common::block_count; ++block)
         enslaved.J.all += Eigen::Map<const Eigen::VectorXd>(
             &enslaved.J_of_block[std::size_t(block * 3 * size)], 3 * size);
-    for (std::size_t a = 0; a < 3; ++a)
-        common::fold_ghosts(grid, electric.place[a], felt(grid).parity[a],
-                            enslaved.J.all.data() + long(a) * grid.size());
+    fold_ghosts(grid, felt(grid), enslaved.J.all.data());
 }
 
 /// Takes the step that follow_field has found: x^{n+1} where the path ends, v^{n+1} from the field along it.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "implicit_moment/kick_and_fly.hpp"
+#include "implicit_moment/kick_and_drift.hpp"
 
 namespace implicit_moment {
 

@@ -87,10 +87,7 @@ inline VectorField current_of_step(const Grid& grid, const InterleavedField& pus
                : move_particles<2>(push, grid, dt, settings, particles, crossings, scratch, J)) ==
           0);
     sort_after_push(grid, order, crossings, particles);
-    for (std::size_t a = 0; a < 3; ++a) {
-        common::fold_ghosts(grid, kind.place[a], kind.parity[a],
-                            J.all.data() + long(a) * grid.size());
-    }
+    fold_ghosts(grid, kind, J.all.data());
     return J;
 }
 

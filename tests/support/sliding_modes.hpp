@@ -79,6 +79,7 @@ inline std::vector<SlidingMode> sliding_modes(const SlidingBlock& block) {
     }
     const Matrix K_free = K(free, free), M_free = M(free, free);
     const Eigen::EigenSolver<Matrix> solver(M_free.partialPivLu().solve(K_free));
+    const Eigen::MatrixXcd vectors = solver.eigenvectors();
 
     // K u = q M u, and s^2 + beta q s + q = 0. Slower than this is the block as a whole.
     const double slow = 0.01 * std::sqrt(block.E / block.density) / block.width;
@@ -89,8 +90,7 @@ inline std::vector<SlidingMode> sliding_modes(const SlidingBlock& block) {
         for (const std::complex<double>& s : {-c + root, -c - root}) {
             if (!(std::abs(s) > slow && s.imag() >= 0)) continue;
             Eigen::VectorXcd u = Eigen::VectorXcd::Zero(2 * nodes);
-            for (std::size_t f = 0; f < free.size(); ++f)
-                u[free[f]] = solver.eigenvectors()(static_cast<Eigen::Index>(f), n);
+            u(free) = vectors.col(n);
             modes.push_back({s, u});
         }
     }

@@ -42,9 +42,9 @@ inline void land(const common::Axis& axis, double& x, double& v) {
 /// in/out: particles, not sorted afterwards
 /// exact:  |u| stays; a flight back (v -> -v) ends where it began, to round-off.
 /// errors: NumericalError when a particle crosses more than 1000 boxes: the run has blown up
-inline void fly(const Grid& grid, double time, std::vector<Particles>& species) {
+inline void drift(const Grid& grid, double time, std::vector<Particles>& species) {
     for (Particles& s : species) {
-        const auto fly_block = [&](auto dynamics, long begin, long end) {
+        const auto drift_block = [&](auto dynamics, long begin, long end) {
             double count = 0;
             for (long p = begin; p < end; ++p) {
                 const Velocity<double> v =
@@ -63,7 +63,8 @@ inline void fly(const Grid& grid, double time, std::vector<Particles>& species) 
             return count;
         };
         const double lost = common::sum_over_blocks(s.count(), [&](long begin, long end) {
-            return with_dynamics(s, [&](auto dynamics) { return fly_block(dynamics, begin, end); });
+            return with_dynamics(s,
+                                 [&](auto dynamics) { return drift_block(dynamics, begin, end); });
         });
         if (const long of_all = common::sum_over_ranks(long(lost)); of_all > 0)
             common::fail(
