@@ -200,8 +200,7 @@ $(objects)/common/ranks.o: common/ranks.cpp $(BUILD)/flags
 	$(mpi_cxx) $(flags) $(defines) -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX $(include_paths) -MMD -MP -c -o $@ $<
 
 # Facts take half as long to compile at -O1, and most of them no longer to run: what takes long are programs and theory.
-long_at_O1 := cic_theory_mesh cic_theory_waves implicit_moment_drift_theory implicit_moment_mass_matrix implicit_moment_theory \
-              mpm_explicit_viscosity mpm_implicit_viscosity
+long_at_O1 := cic_theory_mesh cic_theory_waves implicit_moment_drift_theory implicit_moment_mass_matrix
 ifeq ($(SANITIZE),)
 # With wide vectors g++ then takes more of Eigen's intrinsics for uninitialized.
 $(patsubst %,$(objects)/tests/%.o,$(filter-out $(long_at_O1),$(tests))): \

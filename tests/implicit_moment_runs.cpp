@@ -76,10 +76,10 @@ void check_wave(const std::string& name, const std::string& file, double angle_p
 TEST_CASE("GEM with seed 1 reconnects in the published windows" * doctest::description("physics")) {
     check_gem("1");
 }
-TEST_CASE("GEM with seed 2 reconnects in the published windows" * doctest::description("physics")) {
+TEST_CASE("GEM with seed 2 reconnects in the published windows" * doctest::description("long")) {
     check_gem("2");
 }
-TEST_CASE("GEM with seed 3 reconnects in the published windows" * doctest::description("physics")) {
+TEST_CASE("GEM with seed 3 reconnects in the published windows" * doctest::description("long")) {
     check_gem("3");
 }
 

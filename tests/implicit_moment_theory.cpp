@@ -133,6 +133,8 @@ TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step sa
         for (Case w :
              {with(nothing), with(nothing, false, 0.8), with(on_mesh), with(rough), with(mass),
               with(enslaved), with(nothing, true), with(quadratic, true), with(rough, true)}) {
+            // Paths in the field take many times as long.
+            if (in_cell > 16 && w.field.solver == "newton_krylov") continue;
             w.uniform.particles_per_cell = in_cell;
             CAPTURE(w.leapfrog.chosen);
             CAPTURE(w.field.response);

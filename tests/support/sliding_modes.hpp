@@ -17,6 +17,7 @@
 #include <complex>
 #include <vector>
 
+#include "common/least_squares.hpp"
 #include "tests/support/any_cloud.hpp"
 
 namespace facts {
@@ -149,8 +150,7 @@ inline std::complex<double> exponent(const std::vector<double>& y, double dt, st
     Eigen::MatrixXd A(rows, 3);
     A << all.segment(static_cast<long>(every), rows), all.head(rows), Eigen::VectorXd::Ones(rows);
     A.leftCols(2) /= all.cwiseAbs().maxCoeff();
-    const Eigen::Vector3d c =
-        A.colPivHouseholderQr().solve(-all.tail(rows) / all.cwiseAbs().maxCoeff());
+    const Eigen::Vector3d c = common::least_squares(A, -all.tail(rows) / all.cwiseAbs().maxCoeff());
     const std::complex<double> root =
         0.5 * (-c[0] + std::sqrt(std::complex(c[0] * c[0] - 4 * c[1])));
     return std::log(root) / (real(static_cast<long>(every)) * dt);
