@@ -12,6 +12,7 @@
 
 #include "cic/theory/diocotron.hpp"
 #include "cic/theory/sheath.hpp"
+#include "implicit_moment/theory/eigenvalues.hpp"
 #include "tests/support/any_numbers.hpp"
 
 namespace {
@@ -109,7 +110,9 @@ double fastest_growth_on_mesh(const ChargedLayer& layer, double k, int cells) {
         omega.row(j) *= -k * jump;
         omega(j, j) += k * layer_drift(layer, from_middle * h);
     }
-    return Eigen::EigenSolver<Eigen::MatrixXd>(omega, false).eigenvalues().imag().maxCoeff();
+    return implicit_moment::eigensystem(omega.cast<std::complex<double>>())
+        .values.imag()
+        .maxCoeff();
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ Complex rigid_kink(const CurrentSheet& sheet, double k) {
 
 // All eigenvalues, of matrices that are small.
 std::vector<Complex> spectrum(const SheetMatrix& m) {
-    const Eigen::VectorXcd all = Eigen::MatrixXcd(m.A).eigenvalues();
+    const Eigen::VectorXcd all = eigensystem(Eigen::MatrixXcd(m.A)).values;
     return {all.begin(), all.end()};
 }
 

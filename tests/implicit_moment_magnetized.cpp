@@ -241,7 +241,7 @@ TEST_CASE("energy flows into the plasma where all its species are Maxwellians at
         CAPTURE(omega);
         const Eigen::Matrix3cd tensor = magnetized_response(at_rest, {1.3, 0.9}, omega),
                                lossy = (tensor - tensor.adjoint()) / Complex(0, 2);
-        CHECK(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3cd>(lossy).eigenvalues()[0] >= -1e-12);
+        CHECK(eigensystem(lossy).values.real().minCoeff() >= -1e-12);
         CHECK(lossy.trace().real() >= 1e-3);
     }
 }
