@@ -196,7 +196,8 @@ inline void emit_new(const Grid& grid, const ParticleBoundaries& conditions,
 ///         emitted_again, how many of each species the source has sent back
 /// exact:  the charge of particles and walls together stays, but for what grounded walls absorb: a source
 ///         takes what it emits from its wall
-/// note:   A reflected particle keeps the leapfrog centered: its mirror image would have moved so.
+/// note:   A reflected particle keeps the leapfrog centered where the wall has no field: its mirror image would
+///         have moved so. A field on the wall leaves an error of first order in the step.
 /// errors: NumericalError when a particle leaps over the whole box, or when they are too many
 inline void apply_particle_boundaries(const Grid& grid, const ParticleBoundaries& conditions,
                                       long step, std::vector<Particles>& species, Walls& walls,

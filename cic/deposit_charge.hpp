@@ -1,6 +1,7 @@
 // particles -> mesh: every cloud shares its charge among the nodes that it touches.  [CIC-1]
 #pragma once
 
+#include <cstdlib>
 #include <vector>
 
 #include "cic/weights.hpp"
@@ -98,12 +99,13 @@ inline void move_ghosts_to_walls(const Grid& grid, Field& rho_g) {
 }
 
 // The uniform background as the clouds of the energy-conserving scheme have it, so that with as many of
-// opposite charge it is neutral: with tsc 1 + 1/12 on a wall and 1 - 1/24 on the node inside.
+// opposite charge it is neutral (N on a lattice in a cell, to 1/12 N^2): with tsc 1 + 1/12 on a wall and 1 - 1/24
+// on the node inside.
 inline void add_background_as_clouds(const Grid& grid, double background, Field& rho_g) {
     const auto part = [](const common::Axis& axis, long i) {
         if (axis.periodic) return 1.0;
         const auto of_wall = [](long away) { return away == 0 ? 2 : away == 1 ? -1 : 0; };
-        return 1 + (of_wall(i) + of_wall(axis.cells - i)) / 24.0;
+        return 1 + (of_wall(std::abs(i)) + of_wall(std::abs(axis.cells - i))) / 24.0;
     };
     for (long j = -1; j <= grid.z.cells + 1; ++j)
         for (long i = -1; i <= grid.x.cells + 1; ++i)

@@ -88,23 +88,23 @@ inline double surface_charge(double phi_wall, double phi_next, double rho_wall, 
 
 /// Fills the places around the mesh with copies of the field, periodic ones or images behind walls, so
 /// that gather_field stays the transpose of deposit_charge: on nodes mirror images; on edges, where it is
-/// the difference of a potential with phi_-1 = 2 phi_0 - phi_1, the same field across the wall and the
-/// opposite one along it.
+/// the difference of a potential with phi_-1 = 2 phi_0 - phi_1, the same field across the wall, and along it
+/// the opposite one about that on the wall (which is not zero where the potentials of walls that meet differ).
 inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
     const auto at = [&](long i, long j) -> NodeField& { return E_g[grid.index(i, j)]; };
     const long nx = grid.x.cells, nz = grid.z.cells;
-    const int along = on_edges ? -1 : 1;
+    const auto along = [&](const common::Axis& axis, const auto& field) {
+        common::ghosts_along(axis, false, on_edges ? -1 : 1, [&](long to, long from, int sign) {
+            field(to) = sign < 0 ? 2 * field(to < 0 ? 0 : axis.cells) - field(from) : field(from);
+        });
+    };
     for (long j = 0; j <= nz; ++j) {
         common::ghosts_along(grid.x, on_edges, 1,
                              [&](long to, long from, int) { at(to, j).x = at(from, j).x; });
-        common::ghosts_along(grid.x, false, along, [&](long to, long from, int sign) {
-            at(to, j).z = Real(sign) * at(from, j).z;
-        });
+        along(grid.x, [&](long i) -> Real& { return at(i, j).z; });
     }
     for (long i = -1; i <= nx + 1; ++i) {
-        common::ghosts_along(grid.z, false, along, [&](long to, long from, int sign) {
-            at(i, to).x = Real(sign) * at(i, from).x;
-        });
+        along(grid.z, [&](long j) -> Real& { return at(i, j).x; });
         common::ghosts_along(grid.z, on_edges, 1,
                              [&](long to, long from, int) { at(i, to).z = at(i, from).z; });
     }

@@ -303,6 +303,47 @@ TEST_CASE("the force of the energy scheme is the gradient of the field energy") 
     }
 }
 
+TEST_CASE("the field of the energy scheme is minus the gradient of the potential under the cloud") {
+    for (const Mesh& m : meshes(true)) {
+        CAPTURE(m.name);
+        Walls walls;  // of a box whose potentials are unlike where they meet
+        walls[x_low].potential = 2, walls[z_low].potential = -2, walls[x_high].potential = 0.5;
+        const Particles cloud = scattered(m, 20, -0.4, 8);
+        const Solved s = solve(m, {cloud}, -mean_charge(m, cloud), false, walls);
+        Particles probes = scattered(m, 60, 1, 9);
+        const auto nodes = [](const common::Axis& axis) { return axis.cells + !axis.periodic; };
+        const auto potential = [&](std::size_t p) {
+            Particles one = probes;
+            one.x_p = {probes.x_p[p]}, one.vx_p = {0};
+            if (m.scheme.dimensions == 2) one.z_p = {probes.z_p[p]}, one.vz_p = {0};
+            DepositScratch scratch;
+            Field rho_g;
+            deposit_charge({one}, m.grid, m.scheme, 0, scratch, rho_g);
+            const auto inside = [](const common::Axis& axis, long i) {
+                return axis.periodic || (i > 0 && i < axis.cells) ? 1 : 0.5;
+            };
+            double sum = 0;
+            for (long j = 0; j < nodes(m.grid.z); ++j)
+                for (long i = 0; i < nodes(m.grid.x); ++i)
+                    sum += rho_g[m.grid.index(i, j)] * s.field.phi[m.grid.index(i, j)] *
+                           inside(m.grid.x, i) * inside(m.grid.z, j);
+            return sum * m.grid.x.spacing() * m.grid.z.spacing() / probes.q_p;
+        };
+        const auto E = gathered(m, s.field.E_g, probes);
+        for (std::size_t p = 0; p < E.size(); ++p)
+            for (std::size_t a = 0; a < (m.scheme.dimensions == 2 ? 2 : 1); ++a) {
+                Real& x = a == 0 ? probes.x_p[p] : probes.z_p[p];
+                const double here = x, h = 1e-5;
+                x = here + h;
+                const double after = potential(p);
+                x = here - h;
+                const double before = potential(p);
+                x = here;
+                CHECK(std::fabs(E[p][a] + (after - before) / (2 * h)) <= 1e-8);
+            }
+    }
+}
+
 TEST_CASE("particles that fill the mesh evenly are neutral with as much background") {
     for (const bool energy : {false, true}) {
         for (const Mesh& m : meshes(energy)) {

@@ -124,13 +124,17 @@ class Recorder {
             parameters_.walls, [](const WallCase& wall) { return wall.potential != 0; });
         const double own = biased ? history.first("kinetic") : energy.front();
         const double scale = own > 1e-3 * largest ? own : largest;
-        const bool conserving = parameters_.scheme().energy_conserving;
-        summary.hint(
-            sentence("the mesh heats what it does not resolve, few particles are noise, and the "
-                     "leapfrog heats what swings within a step: raise grid.cells_x or "
-                     "particles_per_cell, take ",
-                     conserving ? "" : "method.scheme = \"energy\" or ",
-                     "method.weighting = \"tsc\", or lower time.dt"));
+        const Scheme scheme = parameters_.scheme();
+        const bool conserving = scheme.energy_conserving;
+        summary.hint(sentence(
+            "the mesh heats what it does not resolve, few particles are noise, and the "
+            "leapfrog heats what swings within a step: raise grid.cells_x or "
+            "particles_per_cell, ",
+            conserving && scheme.order == 2 ? ""
+            : conserving                    ? "take method.weighting = \"tsc\", "
+            : scheme.order == 2             ? "take method.scheme = \"energy\", "
+                                : "take method.scheme = \"energy\" or method.weighting = \"tsc\", ",
+            "or lower time.dt"));
         // Of the field of a wave on nodes the momentum scheme turns cos^2(k dx/2) into motion.
         double limit = 0.05;
         if (!conserving && comparison_.follows_mode) {

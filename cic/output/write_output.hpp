@@ -35,6 +35,7 @@ inline void write_fields(const common::Snapshot& at_time, const Case& parameters
     if (plane) add("E_z", "m*velocity*omega_p/e", [&](long n) { return double(field.E_g[n].z); });
     DepositScratch scratch;
     for (const Particles& s : state.species) {
+        // As a density of particles: at walls without the images of the energy-conserving scheme.
         Field charge = Field::Zero(grid.size());
         add_charge(s, grid, parameters.scheme(), scratch, charge);
         common::fold_ghosts(grid, common::on_nodes, {1, 1}, charge.data());

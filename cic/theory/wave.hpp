@@ -451,7 +451,8 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
     if (grows && (begins > level || in_noise) &&
         (!grows_right || (elsewhere && seen.growth_error() > growth)))
         seen.found = false, seen.reason = too_high, seen.over = false;
-    else if (elsewhere && periods < search.periods && std::fabs(folds) < search.e_foldings)
+    else if (elsewhere && later_noise > 0.3 * field && periods < search.periods &&
+             std::fabs(folds) < search.e_foldings)
         seen.found = false, seen.over = false,
         seen.reason = sentence("cannot be measured, because the wave of theory has ", periods,
                                " periods and ", std::fabs(folds), " e-foldings, below ",
