@@ -71,7 +71,7 @@ inline std::vector<Particles> copy_if_relativistic(const std::vector<Particles>&
     return any_relativistic(species) ? species : std::vector<Particles>{};
 }
 
-/// Takes back a kick, whose field is the next guess. errors: NumericalError after twenty turns
+/// Takes back a kick, whose field is the next guess. errors: NumericalError after twenty iterations
 inline void take_back_kick(const std::vector<Particles>& before, int iteration,
                            std::vector<Particles>& species) {
     if (iteration == 20)

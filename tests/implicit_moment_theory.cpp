@@ -108,7 +108,8 @@ double deviation(const std::vector<Amplitudes>& run, const Case& of_theory) {
 
 }  // namespace
 
-// With 12 and 20 cells in a wave. What is left falls as 1/particles_per_cell.
+// With 12 and 20 cells in a wave. What is left falls as 1/particles_per_cell (of paths in the field, which take
+// many times as long, 16 per cell are enough).
 TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step says" *
           doctest::description("physics")) {
     const auto with = [](auto change, bool leapfrog = false, double theta = 0.5) {
@@ -133,7 +134,6 @@ TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step sa
         for (Case w :
              {with(nothing), with(nothing, false, 0.8), with(on_mesh), with(rough), with(mass),
               with(enslaved), with(nothing, true), with(quadratic, true), with(rough, true)}) {
-            // Paths in the field take many times as long.
             if (in_cell > 16 && w.field.solver == "newton_krylov") continue;
             w.uniform.particles_per_cell = in_cell;
             CAPTURE(w.leapfrog.chosen);

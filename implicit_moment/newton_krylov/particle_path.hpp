@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "implicit_moment/kick_and_drift.hpp"
+#include "implicit_moment/move_one.hpp"
 
 namespace implicit_moment {
 
