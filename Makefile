@@ -129,7 +129,7 @@ The particle-in-cell family in running code
                          all combinations side by side (make deps-sweep), a table and a figure
   make cost              the cost slide, measured: explicit over implicit, against the mass ratio
   make explicit_gem      the full explicit run of that slide, to the plateau, forty minutes; resumable
-  make test              the facts, some 25 minutes on two cores, half of it compiling   (make test ARGS='-R gmres': some)
+  make test              the facts, some 18 minutes on two cores, half of it compiling   (make test ARGS='-R gmres': some)
   make test-long         every figure at full length, its numbers checked
   make torture           half an hour of kills, failing disks, forged files and fuzzing; resumable
   make mutate            the changes in a program that no fact notices: PROGRAM=cic N=50 SEED=1; resumable
