@@ -116,7 +116,8 @@ inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
 ///         charges of floating ones
 /// out:    field.phi; field.E_g, on nodes (momentum-conserving) or on edges (energy-conserving);
 ///         field.walls with the charges of grounded walls and the potentials of floating ones
-/// exact:  the difference equation to round-off. On a node of a wall E is the mean of the two sides
+/// exact:  the difference equation to round-off. Grounded walls have together the opposite of the charge
+///         between them, in a box where all have one potential. On a node of a wall E is the mean of the two sides
 ///         of its charge, sigma and E_1/2, so that in one dimension the force on all particles is
 ///         the difference of the field pressures on the walls,
 ///           sum_g rho_g V_g E_g = [E^2/2]_low^high
@@ -140,16 +141,19 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
     // What the walls got: the mean charge of a grounded one, the potential of a floating one; and
     // the field on their nodes.
     for (const bool along_x : {true, false}) {
-        const common::Axis& axis = along_x ? grid.x : grid.z;
+        const common::Axis &axis = along_x ? grid.x : grid.z, &other = along_x ? grid.z : grid.x;
         if (axis.periodic) continue;
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
             grid, along_x, [&](long n, long in, WallName wall, double sign, double share) {
-                const double sigma = surface_charge(phi[n], phi[n + in], rho[n], axis.spacing());
-                charge[wall] += share * sigma;
+                const double dx = axis.spacing(), phi_next = phi[n + in],
+                             sigma = surface_charge(phi[n], phi_next, rho[n], dx);
+                // Of the charge in a corner each of the two walls has half.
+                const double of_corner = share < 0.75 / double(other.cells) ? 0.5 : 1;
+                charge[wall] += share * surface_charge(phi[n], phi_next, of_corner * rho[n], dx);
                 if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
                 if (on_edges) return;
-                const double E_half = (phi[n] - phi[n + in]) / axis.spacing();
+                const double E_half = (phi[n] - phi_next) / dx;
                 (along_x ? field.E_g[n].x : field.E_g[n].z) = Real(sign * 0.5 * (sigma + E_half));
             });
         for (const WallName wall : {along_x ? x_low : z_low, along_x ? x_high : z_high})

@@ -486,6 +486,28 @@ TEST_CASE("the force between walls is the difference of the field pressures") {
     }
 }
 
+TEST_CASE("grounded walls have together the opposite of the charge between them") {
+    for (const bool energy : {false, true})
+        for (const Mesh& m : meshes(energy)) {
+            if (m.grid.x.periodic && m.grid.z.periodic) continue;
+            CAPTURE(m.name);
+            CAPTURE(energy);
+            Walls walls;
+            const bool box = !m.grid.x.periodic && !m.grid.z.periodic;  // which has one potential
+            for (const WallName wall : {x_low, x_high, z_low, z_high})
+                walls[wall].potential = box ? 2 : wall == x_low ? 2 : wall == z_low ? -2 : 0.5;
+            const Particles cloud = scattered(m, 40, -0.4, 8);
+            const Solved s = solve(m, {cloud}, 0, false, walls);
+            double all = mean_charge(m, cloud) * m.grid.x.length * m.grid.z.length;
+            for (const WallName wall : {x_low, x_high, z_low, z_high}) {
+                const bool along_x = wall == x_low || wall == x_high;
+                if (!(along_x ? m.grid.x : m.grid.z).periodic)
+                    all += s.field.walls[wall].charge * (along_x ? m.grid.z : m.grid.x).length;
+            }
+            CHECK(std::fabs(all) <= 1e-12);
+        }
+}
+
 TEST_CASE("a floating wall carries its charge and a row of floating walls no net field") {
     Mesh m{{{10, 0, 5.0, false}, {8, 0, 3.0, true}}, {1, false, 2}, ""};
     const Particles cloud = scattered(m, 40, -0.2, 11);
