@@ -63,18 +63,18 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
 }
 
 // Visits the nodes of both walls of a direction: visit(node, step to the next node inside, wall,
-// +1 or -1 for a normal along or against the axis, share of the wall's area).
+// +1 or -1 for a normal along or against the axis, part of a node's area: 1, or 1/2 in a corner).
 template <class Visit>
 void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     const common::Axis& other = along_x ? grid.z : grid.x;
     const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride();
     for (long k = 0; k <= (other.periodic ? other.cells - 1 : other.cells); ++k) {
         const bool corner = !other.periodic && (k == 0 || k == other.cells);
-        const double share = (corner ? 0.5 : 1.0) / double(other.cells);
+        const double part = corner ? 0.5 : 1.0;
         visit(along_x ? grid.index(0, k) : grid.index(k, 0), step, along_x ? x_low : z_low, 1.0,
-              share);
+              part);
         visit(along_x ? grid.index(N, k) : grid.index(k, N), -step, along_x ? x_high : z_high, -1.0,
-              share);
+              part);
     }
 }
 
@@ -145,12 +145,12 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
         if (axis.periodic) continue;
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
-            grid, along_x, [&](long n, long in, WallName wall, double sign, double share) {
+            grid, along_x, [&](long n, long in, WallName wall, double sign, double part) {
                 const double dx = axis.spacing(), phi_next = phi[n + in],
                              sigma = surface_charge(phi[n], phi_next, rho[n], dx);
                 // Of the charge in a corner each of the two walls has half.
-                const double of_corner = share < 0.75 / double(other.cells) ? 0.5 : 1;
-                charge[wall] += share * surface_charge(phi[n], phi_next, of_corner * rho[n], dx);
+                charge[wall] += part / double(other.cells) *
+                                surface_charge(phi[n], phi_next, part * rho[n], dx);
                 if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
                 if (on_edges) return;
                 const double E_half = (phi[n] - phi_next) / dx;

@@ -108,8 +108,8 @@ double deviation(const std::vector<Amplitudes>& run, const Case& of_theory) {
 
 }  // namespace
 
-// With 12 and 20 cells in a wave. What is left falls as 1/particles_per_cell (of paths in the field, which take
-// many times as long, 16 per cell are enough).
+// With 12 and 20 cells in a wave. What is left falls as 1/particles_per_cell; paths in the field, which take many
+// times as long, are followed with 16 per cell alone.
 TEST_CASE("cold magnetized plasma at an angle moves as the matrix of its step says" *
           doctest::description("physics")) {
     const auto with = [](auto change, bool leapfrog = false, double theta = 0.5) {

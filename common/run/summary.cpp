@@ -37,12 +37,8 @@ std::string host_name() {
 
 // The library writes a number that is not finite as null without a word; say so.
 void put(Json& object, const std::string& key, double value) {
-    if (std::isfinite(value)) {
-        object[key] = value;
-    } else {
-        object[key] = nullptr;
-        object["finite"] = false;
-    }
+    object[key] = value;
+    if (!std::isfinite(value)) object["finite"] = false;
 }
 
 // Six digits, and the error with two.

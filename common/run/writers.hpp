@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -75,17 +76,12 @@ struct VectorColumn {
 
 namespace writers_detail {
 
-/// errors: InputError with the path and the sentence where the condition does not hold
-inline void require(bool condition, const std::string& path, const std::string& sentence) {
-    if (!condition) throw InputError(path + ": " + sentence);
-}
-
-/// errors: InputError where a list does not have `count` values
+/// errors: InputError with the path where a list does not have `count` values
 inline void require_length(std::span<const double> values, long count, const std::string& path,
                            const std::string& name) {
-    require(long(values.size()) == count, path,
-            "column '" + name + "' has " + std::to_string(values.size()) + " values for " +
-                std::to_string(count) + " points");
+    if (long(values.size()) == count) return;
+    throw InputError(path + ": column '" + name + "' has " + std::to_string(values.size()) +
+                     " values for " + std::to_string(count) + " points");
 }
 
 /// The first lines of a table: names_and_units(), and for a snapshot "# time 40 step 400", followed
@@ -189,10 +185,6 @@ inline void write_time(OutputFile& file, double time) {
     file.text("</DataArray>\n</FieldData>\n");
 }
 
-}  // namespace writers_detail
-
-namespace writers_detail {
-
 /// Adds a file to the list of its kind, fields.pvd, which ParaView opens as one thing in time. Lines
 /// of this step and later steps are those of a run that has gone back to an earlier checkpoint.
 inline void add_to_collection(const Snapshot& at, const std::string& kind,
@@ -268,17 +260,12 @@ inline void write_fields(const std::string& path, const SampledAxis& x, const Sa
     columns.insert(columns.end(), fields.begin(), fields.end());
     OutputFile file(path);
     writers_detail::begin_table(file, columns, at);
+    const auto next = [&](double value) { file.text(" "), file.number(value); };
     for (long j = 0; j < z.count; ++j) {
         for (long i = 0; i < x.count; ++i) {
             file.number(x.at(i));
-            if (!z.name.empty()) {
-                file.text(" ");
-                file.number(z.at(j));
-            }
-            for (const auto& f : fields) {
-                file.text(" ");
-                file.number(f.values[std::size_t(j * x.count + i)]);
-            }
+            if (!z.name.empty()) next(z.at(j));
+            for (const auto& f : fields) next(f.values[std::size_t(j * x.count + i)]);
             file.text("\n");
         }
         file.text("\n");
@@ -349,10 +336,8 @@ inline void write_vtp(const Snapshot& at, const std::string& kind, const VectorC
         file, "Points", 3, writers_detail::interleave(position.x, position.y, position.z));
     file.text("</Points>\n<Verts>\n");
     std::vector<std::int64_t> connectivity(position.x.size()), offsets(position.x.size());
-    for (std::size_t i = 0; i < connectivity.size(); ++i) {
-        connectivity[i] = static_cast<std::int64_t>(i);
-        offsets[i] = static_cast<std::int64_t>(i + 1);
-    }
+    std::iota(connectivity.begin(), connectivity.end(), 0);
+    std::iota(offsets.begin(), offsets.end(), 1);
     writers_detail::write_data_array(file, "connectivity", 1, connectivity);
     writers_detail::write_data_array(file, "offsets", 1, offsets);
     file.text("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
