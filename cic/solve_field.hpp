@@ -63,18 +63,18 @@ inline void field_on_nodes(const Grid& grid, const Field& phi, MeshField& E_g) {
 }
 
 // Visits the nodes of both walls of a direction: visit(node, step to the next node inside, wall,
-// +1 or -1 for a normal along or against the axis, part of a node's area: 1, or 1/2 in a corner).
+// +1 or -1 for a normal along or against the axis, step along the wall out of a corner or 0).
 template <class Visit>
 void for_each_wall_node(const Grid& grid, bool along_x, const Visit& visit) {
     const common::Axis& other = along_x ? grid.z : grid.x;
-    const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride();
+    const long N = along_x ? grid.x.cells : grid.z.cells, step = along_x ? 1 : grid.stride(),
+               aside = along_x ? grid.stride() : 1;
     for (long k = 0; k <= (other.periodic ? other.cells - 1 : other.cells); ++k) {
-        const bool corner = !other.periodic && (k == 0 || k == other.cells);
-        const double part = corner ? 0.5 : 1.0;
+        const long out = other.periodic ? 0 : k == 0 ? aside : k == other.cells ? -aside : 0;
         visit(along_x ? grid.index(0, k) : grid.index(k, 0), step, along_x ? x_low : z_low, 1.0,
-              part);
+              out);
         visit(along_x ? grid.index(N, k) : grid.index(k, N), -step, along_x ? x_high : z_high, -1.0,
-              part);
+              out);
     }
 }
 
@@ -117,7 +117,7 @@ inline void fill_ghosts(const Grid& grid, bool on_edges, MeshField& E_g) {
 /// out:    field.phi; field.E_g, on nodes (momentum-conserving) or on edges (energy-conserving);
 ///         field.walls with the charges of grounded walls and the potentials of floating ones
 /// exact:  the difference equation to round-off. Grounded walls have together the opposite of the charge
-///         between them, in a box where all have one potential. On a node of a wall E is the mean of the two sides
+///         between them. On a node of a wall E is the mean of the two sides
 ///         of its charge, sigma and E_1/2, so that in one dimension the force on all particles is
 ///         the difference of the field pressures on the walls,
 ///           sum_g rho_g V_g E_g = [E^2/2]_low^high
@@ -145,12 +145,16 @@ inline void solve_field(FieldSolver& solver, const Field& rho_g, FieldState& fie
         if (axis.periodic) continue;
         std::array<double, 4> charge{};
         detail::for_each_wall_node(
-            grid, along_x, [&](long n, long in, WallName wall, double sign, double part) {
+            grid, along_x, [&](long n, long in, WallName wall, double sign, long out) {
                 const double dx = axis.spacing(), phi_next = phi[n + in],
                              sigma = surface_charge(phi[n], phi_next, rho[n], dx);
-                // Of the charge in a corner each of the two walls has half.
-                charge[wall] += part / double(other.cells) *
-                                surface_charge(phi[n], phi_next, part * rho[n], dx);
+                // A corner has half a face, and belongs to the wall at x, whose potential it has. What
+                // goes from it along the wall at z ends on that one.
+                const double dz = other.spacing(),
+                             to_corner = -dx / (dz * dz) * (phi[n] - phi[n + out]);
+                charge[wall] += out == 0
+                                    ? sigma / double(other.cells)
+                                    : (along_x ? sigma : to_corner) / (2 * double(other.cells));
                 if (field.walls[wall].floating) field.walls[wall].potential = phi[n];
                 if (on_edges) return;
                 const double E_half = (phi[n] - phi_next) / dx;
