@@ -53,7 +53,9 @@ struct DofConstraint {
 enum class Neighbors { all, along_lines };
 
 /// The constraint of the dof in row r, column i: its heaviest neighbor of those that walls hold alike,
-/// one that has a node beyond it if there is; the master is the dof itself where there is none.
+/// one that has a node beyond it if there is; the master is the dof itself where there is none. One across
+/// a corner has to weigh twice as much: beside a flat surface all three weigh the same, and were round-off to
+/// choose, some columns would get the forces of two and others none.
 /// in:     nodes.mass
 inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, long i,
                                    Neighbors neighbors, const GrainNodes& nodes) {
@@ -73,6 +75,7 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
     };
     const DofConstraint none{dof, dof, -1, 0, row.lowest};
     DofConstraint found = none;
+    double most = mass(dof);
     bool tie = false;
     for (long b = -1; b <= 1; ++b) {
         for (long a = -1; a <= 1; ++a) {
@@ -80,19 +83,19 @@ inline DofConstraint constraint_of(const std::vector<GridRow>& rows, long r, lon
             const long master = heavier(r + b, i + a, 1);
             if (master < 0) continue;
             const long beyond = heavier(r + 2 * b, i + 2 * a, 4);
-            const bool better = (beyond >= 0) != (found.beyond >= 0)
-                                    ? beyond >= 0
-                                    : mass(master) > mass(found.master);
-            const bool alike = (beyond >= 0) == (found.beyond >= 0) &&
-                               std::fabs(mass(master) - mass(found.master)) < 1e-9 * mass(master);
+            const double m = (a * b == 0 ? 2 : 1) * mass(master), lead = m - most;
+            const bool same = (beyond >= 0) == (found.beyond >= 0),
+                       alike = same && std::fabs(lead) < 1e-9 * m,
+                       better = same ? lead > 0 && !alike : beyond >= 0;
             tie = alike || (tie && !better);
-            const bool on_line = neighbors == Neighbors::along_lines && beyond >= 0;
-            if (better)
-                found = {dof, master, beyond,
-                         static_cast<signed char>(!on_line ? 0
-                                                  : a != 0 ? 1
-                                                           : 2),
-                         row.lowest};
+            const bool on_line = a * b == 0 && beyond >= 0;
+            if (!better) continue;
+            most = m;
+            found = {dof, master, beyond,
+                     static_cast<signed char>(!on_line ? 0
+                                              : a != 0 ? 1
+                                                       : 2),
+                     row.lowest};
         }
     }
     // Which of two that weigh the same would break a symmetry; and across a corner nothing is driven.

@@ -439,6 +439,26 @@ TEST_CASE("a block between plates has the modulus of plane strain whatever the s
     }
 }
 
+TEST_CASE("a plate presses a block evenly wherever its surface lies in a cell" *
+          doctest::description("physics")) {
+    // The surface comes to less than a tenth of a cell above a line of nodes, where those beyond it have
+    // so little mass that they are held to the others of their column.
+    for (const char* change : {"time.alpha=2", "time.alpha=8", "time.alpha=2 method.mass=lumped",
+                               "time.alpha=2 solver.kind=newton_krylov"}) {
+        const Run r = run("off_lines", "billet",
+                          "grid.cells_y=18 grain.billet.x=0.518 grain.billet.y=0.418 "
+                          "grain.bottom.x=0.518 grain.bottom.y=0.143 grain.bottom.height=0.15 "
+                          "grain.top.x=0.518 grain.top.y=0.693 grain.top.height=0.15 "
+                          "grain.top.velocity_y=-0.02 grain.top.stop=0.8 time.end=1.5 "
+                          "load.damping=20 load.rise=0.2 material.default.E=1e6 "
+                          "method.theta=0.6 method.shape=gimp " +
+                              std::string(change));
+        check_results(r, 4);
+        check_theorem(r);
+        CHECK(r.value("layers_beside_plates") <= 0.005);
+    }
+}
+
 TEST_CASE("contact settles with much friction in long steps" * doctest::description("physics")) {
     // Where a pair may change only a few times, some pull or rub too much here.
     for (const char* change : {"contact.friction=0.8 time.alpha=30", "contact.friction=0.3"}) {

@@ -172,22 +172,23 @@ class ContactColumns {
     // The run that begins at fixed node n: empty where none does.
     SurfaceRun gather_run(long n, ContactStorage& storage) const {
         SurfaceRun run;
+        const Meeting::Axis axis = meetings_[n].axis;
         table_.for_each_node(n, [&](long shared) {
             ContactNode one;
             bodies_.gather(shared, nodes_, storage, one);
             bodies_.find_pairs(h(), bonds_, false, false, storage, one);
-            const Meeting::Axis axis = meetings_[n].axis;
             run.add(one, axis, h());
-            // A node beyond the surface may be held by the line through this one and one further in.
-            for (const ContactBody& body : one.bodies) {
-                if (body.is_fixed()) continue;
-                const auto [from, to] =
-                    std::equal_range(held_.begin(), held_.end(), body.dof, ByMaster{});
-                for (auto by = from; by != to; ++by)
-                    if (by->along == axis && !meets_others(by->beyond))
-                        run.add_beyond(inner_body(by->beyond, body));
-            }
         });
+        // A node beyond the surface may be held by the line through one of these and one further in.
+        for (std::size_t k = 0, nodes = run.size(); k < nodes; ++k) {
+            const ContactBody body = run.free_body(k);
+            const auto [from, to] =
+                std::equal_range(held_.begin(), held_.end(), body.dof, ByMaster{});
+            for (auto by = from; by != to; ++by)
+                if (!body.is_fixed() && by->along == axis && !run.let_pull(by->beyond) &&
+                    !meets_others(by->beyond))
+                    run.add_beyond(k, inner_body(by->beyond, body));
+        }
         return run;
     }
 

@@ -47,13 +47,25 @@ class SurfaceRun {
         }
     }
 
-    /// Takes in what a node of the run shows, with the node beyond it, to one that is held to both.
-    /// in:     beyond, the node's body; its partner is that of the last node that was added
-    void add_beyond(const ContactBody& beyond) {
+    std::size_t size() const { return links_; }
+    /// The body at a node of the run that is not fixed; where both are, the first.
+    const ContactBody& free_body(std::size_t k) const {
+        return bodies_[2 * k + (bodies_[2 * k].is_fixed() && !bodies_[2 * k + 1].is_fixed())];
+    }
+
+    /// Takes in the node that shows, with node k of the run, what one on their line does that is held to both:
+    /// what the surface presses there, it pulls by at the node beyond, also where that is of the run.
+    /// in:     beyond, its body
+    void add_beyond(std::size_t k, const ContactBody& beyond) {
         if (links_ == RunTable::longest) return;
-        const std::size_t k = links_++, at = 2 * k, free = bodies_[at - 2].is_fixed() ? 1 : 0;
-        bodies_[at + free] = beyond, bodies_[at + 1 - free] = bodies_[at - 1 - free];
-        keys_[k] = keys_[k - 1], may_pull_[k] = true;
+        const std::size_t at = 2 * links_, free = bodies_[2 * k].is_fixed() ? 1 : 0;
+        bodies_[at + free] = beyond, bodies_[at + 1 - free] = bodies_[2 * k + 1 - free];
+        keys_[links_] = keys_[k], may_pull_[links_] = true, ++links_;
+    }
+    bool let_pull(long dof) {
+        for (std::size_t k = 0; k < links_; ++k)
+            if (free_body(k).dof == dof) return may_pull_[k] = true;
+        return false;
     }
 
     /// The weights of its nodes. out: whether it has any, and so makes a contact
