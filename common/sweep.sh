@@ -39,7 +39,20 @@ word() { printf "'%s'" "$(printf %s "$1" | sed "s/'/'\\\\''/g")"; }
 lists="" fixed=""
 while [ $# -gt 0 ]; do
     case $1 in
-    --) shift; for one; do fixed="$fixed $(word "$one")"; done; break ;;
+    --)
+        shift
+        for one; do
+            case $one in
+            --force | --strict) ;;
+            -*) fail "'$one' cannot follow --: each run has one thread and a folder of its own; KEY=VALUE, --force and --strict can" ;;
+            *=*) ;;
+            *) fail "'$one' is not KEY=VALUE" ;;
+            esac
+            fixed="$fixed $(word "$one")"
+        done
+        break
+        ;;
+    -*) fail "'$1' is not KEY=VALUE,VALUE; what is the same for all runs follows --" ;;
     *= | *=,* | *,,* | *,) fail "'$1' lacks a value: KEY=VALUE,VALUE" ;;
     *=*) lists="$lists $(full_name "${1%%=*}")=${1#*=}" ;;
     *) fail "'$1' is not KEY=VALUE,VALUE" ;;

@@ -73,6 +73,8 @@ END {
                     if (cell[row, i + 2] != "-") { expected = cell[row, i + 2]; sub(/^[<>]/, "", expected) }
                 }
                 if (!n) continue
+                filled[p, g] = 1
+                if (short) has_short[p, g] = 1
                 mean = sum / n
                 if (n > 1) { error = squares / n - mean ^ 2; error = error > 0 ? sqrt(error * n / (n - 1)) : 0 }
                 printf "%s %.9g %.9g %s %s\n", x, mean, error, expected, short ? mean : "NaN"
@@ -80,7 +82,7 @@ END {
                 if (mean + error > high) high = mean + error
                 if (expected != "NaN" && expected + 0 < low) low = expected + 0
                 if (expected != "NaN" && expected + 0 > high) high = expected + 0
-                if (expected != "NaN") has_expected[p] = 1
+                if (expected != "NaN") has_expected[p, g] = 1
             }
             print "EOD"
         }
@@ -89,10 +91,14 @@ END {
         if (margin <= 1e-9 * (high < 0 ? -high : high)) margin = high != 0 ? 0.1 * (high < 0 ? -high : high) : 1
         printf "set title '%s'; set yrange [%.9g:%.9g]\n", plain(name[i]) (judged ? ", " passed " of " judged " PASS" : ""), low - margin, high + (groups > 1 && p == 1 ? 4 : 1) * margin
         print (p == 1 && groups > 1 ? "set key on" : "unset key")
-        printf "plot "
-        for (g = 1; g <= groups; g++) printf("%s$r%dg%d using 1:2:3 with yerrorlines lt %d ps 1.3 title '%s'", g > 1 ? ", " : "", p, g, g, plain(group[g]))
-        if (passed < judged) for (g = 1; g <= groups; g++) printf ", $r%dg%d using 1:5 with points pt 6 ps 3 lw 3 lc rgb orange notitle", p, g
-        if (has_expected[p]) printf ", $r%dg1 using 1:4 with lines dt 2 lw 2 lc rgb ink notitle", p
+        # Only what has points: of an empty block gnuplot complains.
+        printf "plot -1e300 notitle"
+        for (g = 1; g <= groups; g++) {
+            if (!filled[p, g]) printf ", -1e300 with lines lt %d title '%s'", g, plain(group[g])
+            else printf ", $r%dg%d using 1:2:3 with yerrorlines lt %d ps 1.3 title '%s'", p, g, g, plain(group[g])
+            if (has_short[p, g]) printf ", $r%dg%d using 1:5 with points pt 6 ps 3 lw 3 lc rgb orange notitle", p, g
+            if (has_expected[p, g]) printf ", $r%dg%d using 1:4 with lines dt 2 lw 2 lc rgb ink notitle", p, g
+        }
         print ""
     }
     print "unset multiplot"
