@@ -17,9 +17,7 @@ for kind in $kinds; do
     [ "$(echo "$times" | wc -w)" -gt 1 ] || continue
     set --
     for time in $times; do set -- "$@" "$(sh common/snapshots.sh file "$run" "$kind" "$time")"; done
-    script=common/figures/fields.awk
-    [ "$kind" != particles ] || script=common/figures/particles.awk
-    awk -f common/columns.awk "$1" | awk -v kind="$kind" -v quantities="${QUANTITIES:-}" -v frames="$frames" -f common/figures/tables.awk -f "$script" - "$@" > "$frames/page.gp"
+    FRAME_FOLDER=$frames sh common/figures/snapshots.sh "$run" "$kind" "$@" > "$frames/page.gp"
     gnuplot -e "heading='$run'; ended='${ENDED:-}'" "$frames/page.gp"
     name=$plots/$kind
     if command -v ffmpeg >/dev/null; then

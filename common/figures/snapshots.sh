@@ -1,5 +1,6 @@
 #!/bin/sh
-# snapshots.sh RUN KIND [FILE ...]: the gnuplot commands of fields.gp and particles.gp, for these files or for four of those that there are.
+# snapshots.sh RUN KIND [FILE ...]: the gnuplot commands of fields.gp and particles.gp, for these files or for four of those that there are. In the environment,
+# of movie.sh: FRAME_FOLDER, where each file gets a picture of its own, and QUANTITIES.
 set -eu
 export LC_ALL=C.UTF-8
 run=$1 kind=$2
@@ -14,4 +15,6 @@ script=common/figures/fields.awk
 names=$(sed -nE 's/^\[(species|material|grain)[.](.*)\]$/\1 \2/p' "$run/case.toml" 2> /dev/null | tr '\n' ' ')
 # A current sheet has species without sections.
 [ -n "$names" ] || names=$(sed -n '1s/ /\n/gp' "$run/history.dat" 2> /dev/null | sed -n 's/^kinetic_/species /p' | tr '\n' ' ')
-awk -f common/columns.awk "$1" | awk -v kind="$kind" -v names="$names" -f common/figures/tables.awk -f $script - "$@"
+# A Riemann problem has two materials without sections.
+! grep -q '^kind = "riemann"' "$run/case.toml" 2> /dev/null || names='material left material right'
+awk -f common/columns.awk "$1" | awk -v kind="$kind" -v names="$names" -v frames="${FRAME_FOLDER:-}" -v quantities="${QUANTITIES:-}" -f common/figures/tables.awk -f $script - "$@"
