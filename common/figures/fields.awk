@@ -9,7 +9,7 @@ function lines(along, first,    i, k, f, rows) {
     printf("panels = %d; load 'common/figures/panels.gp'; set xlabel '%s'; set xrange [%.9g:%.9g]\n", rows > 12 ? 12 : rows, label(along), low[along], high[along])
     for (k = 1; k <= rows && k <= 12; k++) {
         i = varying[k]
-        printf "set title '%s'; set yrange [%.9g:%.9g]; set key %s title 'time'\n", label(i), low[i] - 0.05 * (high[i] - low[i]) - !varies(i), high[i] + 0.4 * (high[i] - low[i]) + !varies(i), k == 1 ? "on" : "off"
+        printf "set title '%s'; set yrange [%.9g:%.9g]; set key %s title 'time' font ',14'\n", label(i), low[i] - 0.05 * (high[i] - low[i]) - !varies(i), high[i] + (k == 1 ? 0.6 : 0.1) * (high[i] - low[i]) + !varies(i), k == 1 ? "on" : "off"
         for (f = from; f <= to; f++) printf "%s'%s' using %d:%d with lines lt %d title '%s'", f == from ? "plot " : ", ", file[f], along, i, f - from + 1, time[f] == "" ? "" : sprintf("%.5g", time[f])
         print ""
     }

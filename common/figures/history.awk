@@ -50,6 +50,8 @@ function panel_of(i,    other) {
         if (size[partner[i]] > size[i]) size[i] = size[partner[i]]
         return "modes"
     }
+    # Walls that absorb and emit, and batteries that hold a wall at its potential, change the energy.
+    if (name[i] == "energy_drift" && open_ended) return ""
     if (name[i] ~ /(_error|_drift|_residual|_change)$|^div_|^residual$|^budget$/) return "zero"
     return "energy" in number && unit[i] == unit[number["energy"]] ? "energy" : unit[i]
 }
@@ -87,8 +89,10 @@ function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label,
         commands = commands (k == 1 ? "plot " : ", ") curve(1, i, p, "lt " k) " title '" plain(label) "'"
         if ((2, name[i]) in place) commands = commands ", " curve(2, i, p, "lt " k " lw 1.6 dt 2") " notitle"
     }
-    if (p == "modes" && heights) commands = commands sprintf(", exp(%.9g + %.9g * x) with lines lw 2 dt 2 lc rgb ink title 'theory, γ = %.4g'", height, growth[1], growth[1])
+    # Below the key.
+    if (p == "modes" && heights) commands = commands sprintf(", 1 / (exp(%.9g + %.9g * x) < %.9g) * exp(%.9g + %.9g * x) with lines lw 2 dt 2 lc rgb ink notitle", height, growth[1], 2 * top, height, growth[1])
     title = p == "energy" ? "energy" : p == "zero" ? "what should be 0" : p == "modes" ? "amplitudes of modes" : n == 1 ? name[of[1]] : p == 1 ? "numbers" : p
+    if (p == "modes" && heights) title = "modes; dashed: theory, γ = " sprintf("%.4g", growth[1])
     if (hidden) title = title ", the largest " n " of " n + hidden
     print "set title '" plain(title) "' offset 0, -0.4"
     print "set ylabel '" (p == "zero" ? "absolute value" : p == 1 || title == p && p != "energy" ? "" : plain(unit[of[1]])) "' offset 1, 0"
@@ -105,6 +109,7 @@ function draw(p,    of, n, i, k, hidden, top, bottom, long, least, title, label,
 }
 
 END {
+    for (i = 2; i <= columns; i++) if (name[i] ~ /^count_/ && high[i] > low[i] || name[i] ~ /^potential_[xz]_/ && size[i]) open_ended = 1
     for (i = 2; i <= columns; i++) {
         if (!size[i] && name[i] != "energy" || (p = panel_of(i)) == "") continue
         if (!(p in members)) panel[++panels] = p
