@@ -101,6 +101,9 @@ pi_tics(axis, n) = sprintf("set %stics ('0' 0, 'π' pi", axis) . \
 #   t = col(file, 'time'); plot file using t:(column(t + 1))
 col(file, name) = int(system(sprintf("awk -v name='%s' '{ for (i = 1; i <= NF; i++) if ($i == name) print i; exit }' '%s'", name, file)))
 
+# The first number in a named column of a history.
+first(file, name) = real(system(sprintf("awk -v name='%s' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR > 1 && $1 + 0 == $1 { print $c; exit }' '%s'", name, file)))
+
 # The time of a snapshot, fields_000400.dat or another.
 time_of(file) = real(system(sprintf("awk '/^# time/ { print $3; exit }' '%s'", file)))
 

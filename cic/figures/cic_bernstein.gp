@@ -23,7 +23,7 @@ unset label 1; unset colorbox; unset logscale cb; set border 3; set grid
 set lmargin at screen 0.66; set rmargin at screen 0.98
 history = run.'/seeded/history.dat'
 im = col(history, 'mode_im')
-E_0 = 0.02
+E_0 = first(history, 'mode_im')
 seeds = system(sprintf("sed 1d '%s/seeds.dat'", run))
 count = words(seeds) / 2
 omega(n) = real(word(seeds, 2 * n - 1)); E(n) = real(word(seeds, 2 * n))

@@ -10,7 +10,9 @@ file(n, what) = folder.'/'.word(weightings, n).'_'.what.'/history.dat'
 t = col(file(1, 'swinging'), 'time'); separation = col(file(1, 'swinging'), 'separation_x')
 array omega[3]
 do for [n = 1:3] { run = folder.'/'.word(weightings, n).'_swinging'; omega[n] = result('omega') / result('omega_over_theory') }
-q = 0.01; m = 0.5; dt = 0.25; L = 64   # m: the reduced mass
+run = folder.'/cic_passing_0'
+mass(name) = real(given('species.'.name.'.mass'))
+q = real(given('species.a.charge')); m = mass('a') * mass('b') / (mass('a') + mass('b')); dt = parameter('dt'); L = parameter('length_x')   # m: the reduced mass
 set multiplot title 'Two clouds pass through each other' font ',24'
 set bmargin at screen 0.15; set tmargin at screen 0.87
 set lmargin at screen 0.085; set rmargin at screen 0.475
@@ -19,7 +21,7 @@ set xrange [0:3]; set yrange [-0.2:0.4]; set xtics 0.5; set ytics 0.1
 set key top right
 set samples 400
 plot for [n = 1:3] file(n, 'swinging') using (column(t) / 1000):(column(separation)) with lines lc rgb word(tint, n) title word(weightings, n), \
-     for [n = 1:3] 0.15 * cos(1000 * omega[n] * x) with lines dt 2 lw 2 lc rgb ink title (n == 1 ? 'linear force' : '')
+     for [n = 1:3] first(file(1, 'swinging'), 'separation_x') * cos(1000 * omega[n] * x) with lines dt 2 lw 2 lc rgb ink title (n == 1 ? 'linear force' : '')
 set lmargin at screen 0.58; set rmargin at screen 0.975
 set xlabel 'separation r / Δx'; set ylabel 'attraction / (q^2/Δx)' offset 0.5, 0
 set xrange [0:5]; set yrange [0:0.35]; set xtics 1; set ytics 0.05

@@ -47,7 +47,7 @@ do for [n = 5:9] { unset label n }
 set lmargin at screen 0.42; set rmargin at screen 0.65
 set format y '%g'; set yrange [0.7:100]; set ytics (1, 2, 5, 10, 20, 50, 100)
 set ylabel 'total energy / initial' offset 1, 0
-plot for [n = 1:4] file(n) using t:(column(energy) / 0.32) with lines lc rgb word(tint, n)
+plot for [n = 1:4] file(n) using t:(column(energy) / first(file(n), 'energy')) with lines lc rgb word(tint, n)
 unset logscale y; set mytics default
 set lmargin at screen 0.75; set rmargin at screen 0.975
 set yrange [-0.4:1.2]; set ytics 0.4

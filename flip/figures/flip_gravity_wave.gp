@@ -24,7 +24,7 @@ set xrange [0:14]; set yrange [-0.045:0.07]; set xtics 2; set ytics 0.02
 set title 'height of the crest' offset 0, -0.5
 set xlabel 't (g/H)^{1/2}'; set ylabel 'η / H' offset 0.5, 0
 set key at graph 1.0, 1.02 top right maxrows 3 width -3 samplen 1.2
-growth = 0.25 * omega**2 * 0.05
+run = folder.'/theta'; growth = 0.25 * omega**2 * parameter('dt')
 plot (x < 6 ? V / omega * exp(growth * x) : NaN) with lines dt 3 lw 1.5 lc rgb ink title 'theory, θ = 1/2', \
      V / omega * sin(omega * x) with lines dt 2 lw 1.5 lc rgb ink title 'theory', \
      folder.'/flip/history.dat' using 1:(column(height('flip'))) with lines lt 1 title 'flip, θ = 1', \

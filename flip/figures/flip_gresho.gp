@@ -35,7 +35,7 @@ set xrange [0:1]; set yrange [0:1.3]; set xtics 0.5
 set xlabel 'turns, M = 0.001'; set ylabel 'kinetic energy / initial' offset 1, 0
 set key bottom left
 K = col(folder.'/cells/history.dat', 'kinetic')
-K_0 = 0.08377585804147827
+K_0 = first(folder.'/cells/history.dat', 'kinetic')
 set label 1 'density of cells' at 0.09, 1.19 textcolor rgb pink
 plot for [n = 1:3] folder.'/'.word(transfers, n).'-0.001/history.dat' using ($1 / turn):(column(K) / K_0) with lines lc rgb word(tint, n) notitle, \
      folder.'/cells/history.dat' using ($1 / turn):(column(K) / K_0) with lines lc rgb pink notitle
