@@ -3,7 +3,7 @@
 wide = 1500; high = 780
 load 'common/style.gp'
 spectrum = run.'/noise/spectrum.dat'
-Omega = 0.5
+folder = run; run = folder.'/seeded'; Omega = real(given('plasma.B_y')); run = folder
 largest = real(system("LC_ALL=C awk '$1 + 0 == $1 && $1 > 0.3 && $2^2 * $3 > m { m = $2^2 * $3 } END { print m }' '".spectrum."'"))
 set multiplot
 set bmargin at screen 0.145; set tmargin at screen 0.89

@@ -2,12 +2,12 @@
 # reaches its strength: the outer half flies off with what momentum it has, and the inner one swings twice as fast.
 wide = 1500; high = 1000
 load 'common/style.gp'
-E = 100.0; rho = 1.0; L = 25.0; H = 2.5; v_0 = 0.1
+folder = run; run = folder.'/breaks'
+bar(key) = real(given('grain.left.'.key))
+E = real(given('material.default.E')); rho = real(given('material.default.density')); L = 2 * bar('width'); H = bar('height'); v_0 = bar('amplitude')
 k = pi / (2 * L); omega = k * sqrt(E / rho); T = 2 * pi / omega; unit = v_0 * sqrt(E * rho); mass = rho * L * H / 2
-folder = run
 holds = folder.'/holds/history.dat'; breaks = folder.'/breaks/history.dat'
 stress = col(holds, 'bond_normal_1'); left = col(holds, 'momentum_x_left'); right = col(holds, 'momentum_x_right')
-run = folder.'/breaks'
 strength = real(system(sprintf("LC_ALL=C awk '$1 == \"tension\" && $3 < 1e20 { s = $3 } END { print s }' '%s'/case.toml", run)))
 breaks_at = real(entry('results.bond_breaks.expected')); measured_at = result('bond_breaks')
 set multiplot title 'Two bonded halves of a bar' font ',24'
