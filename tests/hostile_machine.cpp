@@ -165,6 +165,9 @@ TEST_CASE("resuming does not replace a stopped run of another input and names da
     const Outcome refused = room.run(other);
     CHECK(refused.status == 2);
     CHECK(holds(refused.err, "holds a stopped run of another input: --restart " + kept));
+    const Outcome foreign = room.run(program("pic") + " --resume --out " + out);
+    CHECK(foreign.status == 2);
+    CHECK(holds(foreign.err, "holds a stopped run of another program: there --restart " + kept));
     CHECK(read_all(kept) == bytes);
     CHECK(room.run(other + "--force").status == 0);
     CHECK(!fs::exists(kept));
@@ -217,7 +220,10 @@ TEST_CASE("a second run in the same folder is refused while the first one writes
     const std::string out = room.path("run");
     const Outcome both =
         room.run(short_run(out, 100000) + "--quiet & first=$!; sleep 0.5; " + short_run(out, 5) +
-                 "--quiet --force; echo second $?; kill $first; wait $first; echo first $?");
+                 "--quiet --force; echo second $?; " + short_run(out, 5) + "--quiet --resume; " +
+                 short_run(out, 5) + "--quiet; kill $first; wait $first; echo first $?");
+    CHECK(both.err.find("earlier run") == std::string::npos);
+    CHECK(both.err.find("replaces") == std::string::npos);
     CHECK(holds(both.err, "another run is writing into this folder"));
     CHECK(holds(both.out, "second 2"));
     CHECK(holds(both.out, "first 143"));

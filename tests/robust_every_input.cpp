@@ -124,7 +124,7 @@ CHOICE = """none -> case.toml:1:
 [time] | end = 0.3 0.4 -> case.toml:2:11:
 [time] | end = 0,3 -> case.toml:2:8:
 [output] | vtk = True -> case.toml:2:7:
-CHOICE = harris -> case.toml:1:COLUMN:
+CHOICE = harris -> could not determine value type; text stands in quotes
 CHOICE = "no\qne" -> case.toml:1:
 CHOICE = "no\nne" -> case.toml:1:COLUMN: 'CHOICE' holds a control character
 CHOICE = "no\u0000ne" -> case.toml:1:COLUMN: 'CHOICE' holds a control character
@@ -348,7 +348,12 @@ case.toml other.toml -> two case files, 'case.toml' and 'other.toml': give one (
 time.end -> time.end: there is no such file
 case.toml time.end = 0.1 -> two case files, 'case.toml' and 'time.end': give one (overrides are
 =0.1 -> command line: '=0.1': write section.key=value
-time.end= -> command line: 'time.end=':
+time.end= -> command line: 'time.end=': 'time.end' takes a number, not text ""
+time.end=1e -> command line: 'time.end=1e': 'time.end' takes a number, not text "1e"
+time.end=1,5 -> 'time.end' takes a number, not text "1,5"
+grid.cells_x=1. -> 'grid.cells_x' = 1 is out of range; allowed:
+grid.cells_x=-.5 -> 'grid.cells_x' = -0.5 is out of range; allowed:
+output.vtk=yes -> 'output.vtk' takes true or false, not text "yes"
 tiem.end=0.1 -> line: 'tiem.end=0.1': unknown parameter 'tiem.end'; did you mean 'time.end'?
 tiem.end=soon -> line: 'tiem.end=soon': unknown parameter 'tiem.end'; did you mean 'time.end'?
 TIME.END=1 -> 'TIME.END'; did you mean 'time.end'?
@@ -358,9 +363,9 @@ grid=64 -> unknown parameter 'grid'
 grid={cells_x=1} -> line: 'grid={cells_x=1}': 'grid.cells_x' = 1 is out of range; allowed:
 grid.cells_x=1 -> line: 'grid.cells_x=1': 'grid.cells_x' = 1 is out of range; allowed:
 time.end=nan -> command line: 'time.end=nan': 'time.end' must be finite, not nan
-time.end=fast -> command line: 'time.end=fast':
+time.end=fast -> command line: 'time.end=fast': 'time.end' takes a number, not text "fast"
 grid.length_x=true -> 'grid.length_x' takes a number, not true or false
-time.end=[1] -> 'time.end' is a list or a date
+time.end=[1] -> 'time.end' takes a number, not text "[1]"
 CHOICE=haris -> 'CHOICE' = "haris" is not one of "
 grid.cells_x=64.5 -> 'grid.cells_x' takes a whole number, not 64.5
 case.toml time.end=1 time.end=2 -> 'time.end' is given twice; keep one of them

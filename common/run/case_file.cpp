@@ -38,7 +38,9 @@ std::size_t utf8_length(std::string_view text, std::size_t k) {
 
 namespace {
 
+// A place in a file; the command line has one line.
 std::string at(const std::string& source, std::size_t line, std::size_t column) {
+    if (source.starts_with("command line:")) return source;
     return source + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
@@ -53,27 +55,24 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
     for (std::size_t k = 0; k < text.size();) {
         const std::size_t length = utf8_length(text, k);
         const auto byte = static_cast<unsigned char>(text[k]);
-        if (length == 0)
-            throw InputError(at(source, line, column) + ": not UTF-8 text; save the file as UTF-8");
+        const auto refuse = [&](const std::string& why) {
+            throw InputError(at(source, line, column) + ": " + why);
+        };
+        if (length == 0) refuse("not UTF-8 text; save the file as UTF-8");
         const bool allowed = byte == '\t' || byte == '\n' ||
                              (byte == '\r' && k + 1 < text.size() && text[k + 1] == '\n');
-        if ((byte < 0x20 && !allowed) || byte == 0x7F) {
-            throw InputError(at(source, line, column) +
-                             ": a control character; this is not a text file, or it is damaged");
-        }
-        if (column > longest_line) {
-            throw InputError(at(source, line, column) + ": the line has more than " +
-                             std::to_string(longest_line) + " letters; this is not a case file");
-        }
+        if ((byte < 0x20 && !allowed) || byte == 0x7F)
+            refuse("a control character; this is not a text file, or it is damaged");
+        if (column > longest_line)
+            refuse("the line has more than " + std::to_string(longest_line) +
+                   " letters; this is not a case file");
         const bool is_mark = k == 0 && text.compare(0, 3, "\xEF\xBB\xBF") == 0;  // of UTF-8
-        if (byte >= 0x80 && inside == '\n' && !is_mark) {
-            throw InputError(at(source, line, column) + ": '" + text.substr(k, length) +
-                             "' may stand in text and comments only; use letters without accents");
-        }
+        if (byte >= 0x80 && inside == '\n' && !is_mark)
+            refuse("'" + text.substr(k, length) +
+                   "' may stand in text and comments only; use letters without accents");
         // Three quotes begin text of several lines, which no parameter takes.
         if (inside == '\n' && (text.compare(k, 3, "\"\"\"") == 0 || text.compare(k, 3, "'''") == 0))
-            throw InputError(at(source, line, column) +
-                             ": write text between single quotes, on one line");
+            refuse("write text between single quotes, on one line");
         const bool escaped = inside == '"' && byte == '\\' && k + 1 < text.size();
         if (byte == '\n' || (byte == inside && inside != '#'))
             inside = '\n';
@@ -95,16 +94,13 @@ struct Placed {
 
 bool is_name_letter(unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; }
 
-bool is_override(const std::string& source) { return source.starts_with("command line:"); }
-
 void flatten(const toml::table& table, const std::string& prefix, const std::string& source,
              std::vector<Placed>& settings) {
     for (const auto& [key, node] : table) {
         const std::string word(key.str());
         const std::string name = prefix + word;
         const auto begin = node.source().begin;
-        const std::string place =
-            is_override(source) ? source : at(source, begin.line, begin.column);
+        const std::string place = at(source, begin.line, begin.column);
         const auto add = [&](const auto& value) {
             settings.push_back({{name, value, place}, {begin.line, begin.column}});
         };
@@ -141,9 +137,9 @@ std::vector<Setting> read_case(const std::string& text, const std::string& sourc
         flatten(toml::parse(std::string_view(text), source), "", source, placed);
     } catch (const toml::parse_error& error) {
         const auto begin = error.source().begin;
-        const std::string place =
-            is_override(source) ? source : at(source, begin.line, begin.column);
-        throw InputError(place + ": " + std::string(error.description()));
+        const std::string why(error.description());
+        throw InputError(at(source, begin.line, begin.column) + ": " + why +
+                         (why.ends_with("value type") ? "; text stands in quotes" : ""));
     }
     std::ranges::stable_sort(placed, {}, &Placed::position);
     std::vector<Setting> settings;

@@ -16,9 +16,8 @@
 #include <utility>
 
 #include "common/ranks.hpp"
-#include "common/run/checkpoint.hpp"
 #include "common/run/machine.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/run.hpp"
 #include "common/run/sentence.hpp"
 
 namespace common {
@@ -82,17 +81,20 @@ void refuse_foreign_case(const ProgramInfo& info, const std::string& path, const
 // older than the program or of another input does not. errors: InputError for one of those that could go on
 void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                           CommandLine& command) {
+    if (!command.dry_run) refuse_live_run(command.out_dir);
     std::error_code error;
     const auto built = fs::last_write_time("/proc/self/exe", error);
     const auto counts = [&](const fs::path& file) {
         return fs::is_regular_file(file, error) && fs::last_write_time(file, error) > built;
     };
     const bool forced = std::exchange(command.force, true);
-    const fs::path folder = command.out_dir, summary = folder / "summary.json";
+    const fs::path folder = command.out_dir, input = folder / "case.toml",
+                   summary = folder / "summary.json";
     const std::string effective_case = table.effective_case(),
+                      found = fs::is_regular_file(input, error) ? read_file(input) : "",
                       text = counts(summary) ? read_file(summary) : "";
-    const bool there = counts(folder / "case.toml"),
-               ours = there && read_file(folder / "case.toml").ends_with("\n" + effective_case);
+    const bool there = counts(input), same = found.starts_with("# " + info.program + " "),
+               ours = there && same && found.ends_with("\n" + effective_case);
     if (ours && !text.empty()) {
         command.fell_short = text.find("\"verdict\": \"FAIL\"") != std::string::npos ||
                              text.find("\"verdict\": \"NOT MEASURED\"") != std::string::npos;
@@ -111,10 +113,12 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
     const bool other = there && !ours,
                stopped = text.empty() || text.find("continue with: ") != std::string::npos;
     if (other && stopped && !checkpoints.empty())
-        refuse(!forced, command.out_dir, ": holds a stopped run of another input: --restart ",
+        refuse(!forced, command.out_dir, ": holds a stopped run of another ",
+               same ? "input: --restart " : "program: there --restart ",
                checkpoints.front().string(), " goes on with it, --force replaces it");
-    if (other && is_first_rank() && !command.dry_run)
-        std::fprintf(stderr, "%s: replaces the run of another input in %s\n", info.program.c_str(),
+    const char* const whose = there ? same ? "other input" : "other program" : " older program";
+    if (!ours && !found.empty() && is_first_rank() && !command.dry_run)
+        std::fprintf(stderr, "%s: replaces the run of an%s in %s\n", info.program.c_str(), whose,
                      command.out_dir.c_str());
     for (const fs::path& path : checkpoints) {
         try {
@@ -175,11 +179,12 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
             found.push_back(nlohmann::ordered_json::parse(read_file(folder + "/summary.json")));
     }
     if (found.empty()) std::exit(status);
-    std::printf("error on each mesh, or value below a bound, and its order: log2 of before/it\n");
+    const char* head =
+        "error on each mesh, or value below a bound, and its order: log2 of before/it\n";
     for (const auto& result : found.back()["results"].items()) {
         const char* const of = result.value().contains("at_most") ? "at_most" : "expected";
         if (!result.value().contains(of)) continue;
-        std::printf("%-26s", result.key().c_str());
+        std::printf("%s%-26s", std::exchange(head, ""), result.key().c_str());
         double before = NAN;
         for (const auto& json : found) {
             const auto one = json["results"].value(result.key(), nlohmann::ordered_json::object());
@@ -198,15 +203,8 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         }
         std::printf("\n");
     }
+    if (*head) std::printf("no result has an expected number, so none has an error\n");
     std::exit(status);
-}
-
-// A number such as -.5 with the zero that TOML asks for.
-std::string with_leading_zero(const std::string& value) {
-    const std::size_t sign = value.find_first_not_of("+-");
-    const bool bare = sign <= 1 && value.size() > sign + 1 && value[sign] == '.' &&
-                      std::isdigit(static_cast<unsigned char>(value[sign + 1]));
-    return bare ? value.substr(0, sign) + "0" + value.substr(sign) : value;
 }
 
 void apply_override(const std::string& argument, ParameterTable& table) {
@@ -222,9 +220,20 @@ void apply_override(const std::string& argument, ParameterTable& table) {
     const std::optional<bool> is_text = table.takes_text(name, value);
     // A name that is none is refused whatever its value; {} may be that of a section.
     if (!is_text && !value.starts_with('{')) return table.set({name, value, place});
-    value = is_text.value_or(false) && !quoted ? "'" + value + "'" : with_leading_zero(value);
     if (value.find('\n') != std::string::npos) throw InputError(place + ": one line, one value");
-    for (const Setting& setting : read_case(name + " = " + value, place)) table.set(setting);
+    std::vector<Setting> settings;
+    try {
+        const bool bare = is_text.value_or(false) && !quoted;
+        settings = read_case(name + " = " + (bare ? "'" + value + "'" : value), place);
+    } catch (const InputError&) {
+        if (is_text.value_or(true) || quoted) throw;
+        // Numbers are written .5, 1. and 01, too; what is none is refused as text.
+        char* end = nullptr;
+        const double number = std::strtod(value.c_str(), &end);
+        settings = {{name, value, place}};
+        if (end != value.c_str() && *end == '\0') settings[0].value = number;
+    }
+    for (const Setting& setting : settings) table.set(setting);
 }
 
 int whole_number(const std::string& option, const std::string& text, long low, long high) {
@@ -369,15 +378,14 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         for (const Setting& setting : read_case(checkpoint.effective_case(), command.restart_path))
             table.set(setting);
         refuse(table.effective_case() != checkpoint.effective_case(), command.restart_path,
-               ": the case in it is not one that was run");
+               ": the case in it lacks parameters: continue it with the build that wrote it");
         command.case_name = checkpoint.case_name();
         if (command.out_dir.empty())
             command.out_dir = fs::path(command.restart_path).parent_path().string();
         if (command.out_dir.empty()) command.out_dir = ".";
     } else {
         if (command.case_path.empty()) command.case_path = find_in_project(info.default_case);
-        std::error_code missing;
-        if (!fs::exists(command.case_path, missing))
+        if (!is_there(command.case_path))
             throw InputError(command.case_path + ": there is no such file" +
                              list_cases(info, command.case_path));
         command.case_name = fs::path(command.case_path).stem().string();

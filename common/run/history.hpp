@@ -56,15 +56,13 @@ class History {
     void row(std::span<const double> values) {
         if (values.size() != columns_.size())
             throw std::logic_error("history: a row of the wrong length");
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            if (!std::isfinite(values[k])) {
+        for (std::size_t k = 0; k < values.size(); ++k)
+            if (!std::isfinite(values[k]))
                 throw NumericalError(
                     "'" + columns_[k].name + "' is not finite in the row after " +
                     columns_[0].name + " = " +
                     (values_.empty() ? "(no row yet)"
                                      : number_text(values_[values_.size() - columns_.size()])));
-            }
-        }
         if (file_ == nullptr) open();
         values_.insert(values_.end(), values.begin(), values.end());
         write(values);
@@ -128,7 +126,7 @@ class History {
         bool rows = !columns_.empty() && !values.empty() && values.size() % columns_.size() == 0;
         for (std::size_t n = columns_.size(); rows && n < values.size(); n += columns_.size())
             rows = values[n] > values[n - columns_.size()];
-        if (!rows) throw InputError("the history in the checkpoint belongs to another case");
+        if (!rows) throw InputError("its history is damaged, or of another build of the program");
         values_ = values;
     }
     /// Writes the file anew with all rows so far: the same bytes, for rows that were restored.

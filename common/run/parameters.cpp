@@ -265,7 +265,8 @@ void ParameterTable::set(const Setting& setting) {
     const bool is_number = integer != nullptr || number != nullptr;
     const double value = number != nullptr ? *number : integer != nullptr ? double(*integer) : 0;
     const auto require = [&](bool right_type, const std::string& type) {
-        if (!right_type) refuse(" takes " + type + ", not " + kind_of(setting));
+        const std::string found = kind_of(setting) + (text != nullptr ? " " + quoted(*text) : "");
+        if (!right_type) refuse(" takes " + type + ", not " + found);
         if (!is_number) return;
         if (!std::isfinite(value)) refuse(" must be finite, not " + number_text(value));
         if (!contains(entry->allowed, value))

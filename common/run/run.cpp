@@ -99,11 +99,10 @@ bool is_ours(const std::string& name) {
 // A message as one line that a terminal can show.
 std::string printable(const std::string& text) {
     std::string result;
-    for (const char letter : text) {
-        const auto byte = static_cast<unsigned char>(letter);
+    for (const unsigned char byte : text) {
         char code[8];
-        std::snprintf(code, sizeof code, "\\x%02x", byte);
-        result += byte < 0x20 || byte == 0x7F ? std::string(code) : std::string(1, letter);
+        std::snprintf(code, sizeof code, byte < 0x20 || byte == 0x7F ? "\\x%02x" : "%c", byte);
+        result += code;
     }
     return result;
 }
@@ -124,10 +123,8 @@ void on_first_rank(const Work& work) {
 std::string clock_text(double seconds) {
     char text[32];
     const long s = std::lround(seconds);
-    if (s < 3600) std::snprintf(text, sizeof text, "%ld:%02ld", s / 60, s % 60);
-    if (s >= 3600)
-        std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-    return text;
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+    return text + (s < 600 ? 3 : s < 3600 ? 2 : 0);
 }
 
 }  // namespace
@@ -220,6 +217,7 @@ void Run::prepare_folder() {
     const bool as_it_is = own_restart || (ours.empty() && !foreign);
     const bool stopped =
         std::ranges::any_of(ours, [](const fs::path& file) { return file.extension() == ".bin"; });
+    refuse_live_run(command_.out_dir);
     refuse(!as_it_is && !command_.force, command_.out_dir,
            ours.empty() ? ": is not empty; --force writes into it, and leaves what is not of a run"
                         : ": holds an earlier run; --force replaces it",
@@ -247,9 +245,8 @@ void Run::lock_folder() {
         if (flock(file, LOCK_EX | LOCK_NB) != 0) {
             // A file system without locks goes without.
             if (errno != EWOULDBLOCK) return;
-            throw InputError(command_.out_dir +
-                             ": another run is writing into this folder; wait for its end, or "
-                             "choose another --out");
+            refuse_live_run(command_.out_dir);
+            continue;
         }
         // The run before may have taken its file away between these two calls.
         struct stat status {};
@@ -400,6 +397,15 @@ void refuse_before_start(const CommandLine& command, long steps, double bytes) {
     const double there = memory_limit_bytes(ranks_here());
     refuse(bytes > there, "the case needs ", bytes / 1073741824, " GiB of memory, and there is ",
            there / 1073741824, ": use fewer particles or cells");
+}
+
+void refuse_live_run(const std::string& folder) {
+    const std::string lock = folder + "/" + lock_name;
+    const int file = open(lock.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+    const bool live = file >= 0 && flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (file >= 0) close(file);
+    refuse(live, folder,
+           ": another run is writing into this folder; wait for its end, or choose another --out");
 }
 
 int run_and_report_errors(const ProgramInfo& info, char** argv,

@@ -157,6 +157,9 @@ class Run {
 /// the machine's memory. in: steps of the whole run; bytes it will take.
 void refuse_before_start(const CommandLine& command, long steps, double bytes);
 
+/// errors: InputError where a run that has not ended writes into the folder
+void refuse_live_run(const std::string& folder);
+
 /// Prepares the machine, runs a program and turns errors into one sentence on stderr and the exit
 /// status: 2 bad input, 3 numerical failure.
 /// in: argv of main; program(run) builds the run in place, so that a failed run still leaves its

@@ -90,10 +90,7 @@ inline void begin_table(OutputFile& file, const std::vector<ScalarColumn>& colum
                         const Snapshot* at = nullptr) {
     file.text(names_and_units(columns));
     if (at == nullptr) return;
-    file.text("# time ");
-    file.number(at->time);
-    file.text(" step ");
-    file.number(at->step);
+    file.text("# time " + number_text(at->time) + " step " + std::to_string(at->step));
     if (at->particles > 0) file.text(" particles " + std::to_string(at->particles));
     file.text(at->note + "\n");
 }
@@ -180,9 +177,8 @@ inline void begin_vtk_file(OutputFile& file, const std::string& type) {
 inline void write_time(OutputFile& file, double time) {
     file.text(
         "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
-        "format=\"ascii\">");
-    file.number(time);
-    file.text("</DataArray>\n</FieldData>\n");
+        "format=\"ascii\">" +
+        number_text(time) + "</DataArray>\n</FieldData>\n");
 }
 
 /// Adds a file to the list of its kind, fields.pvd, which ParaView opens as one thing in time. Lines
@@ -201,11 +197,8 @@ inline void add_to_collection(const Snapshot& at, const std::string& kind,
     }
     OutputFile list(path);
     list.text(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
-        "<Collection>\n" +
-        earlier + start + "\"");
-    list.number(at.time);
-    list.text(name + "</Collection>\n</VTKFile>\n");
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
+        earlier + start + "\"" + number_text(at.time) + name + "</Collection>\n</VTKFile>\n");
     list.finish();
 }
 
@@ -290,20 +283,15 @@ inline void write_vti(const Snapshot& at, const std::string& kind,
     const std::string path = at.path(kind, "vti");
     OutputFile file(path);
     writers_detail::begin_vtk_file(file, "ImageData");
-    std::string extent;
-    for (const auto& axis : axes)
-        extent += (extent.empty() ? "0 " : " 0 ") + std::to_string(axis.count - 1);
-    file.text("<ImageData WholeExtent=\"" + extent + "\" Origin=\"");
-    const auto write_of_each = [&](double SampledAxis::*part) {
-        for (const auto& axis : axes) {
-            if (&axis != &axes.front()) file.text(" ");
-            file.number(axis.*part);
-        }
-    };
-    write_of_each(&SampledAxis::first);
-    file.text("\" Spacing=\"");
-    write_of_each(&SampledAxis::step);
-    file.text("\">\n");
+    std::string extent, origin, spacing;
+    for (const auto& axis : axes) {
+        const std::string gap = extent.empty() ? "" : " ";
+        extent += gap + "0 " + std::to_string(axis.count - 1);
+        origin += gap + number_text(axis.first);
+        spacing += gap + number_text(axis.step);
+    }
+    file.text("<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + origin + "\" Spacing=\"" +
+              spacing + "\">\n");
     writers_detail::write_time(file, at.time);
     file.text("<Piece Extent=\"" + extent + "\">\n");
     const long points = axes[0].count * axes[1].count * axes[2].count;
