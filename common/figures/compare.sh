@@ -18,5 +18,5 @@ done | awk '
         if ($5 != "-") expected[which, $2] = $5 ~ /^[<>]/ ? substr($5, 1, 1) sprintf("%.4g", substr($5, 2)) : sprintf("%.4g", $5) ($6 == "-" ? "" : "±" sprintf("%.2g", $6))
     }
     function or_dash(text) { return text == "" ? "-" : text }
-    function both(of, n) { return or_dash(of[1, n]) (of[1, n] == of[0, n] ? "" : "," or_dash(of[0, n])) }
+    function both(of, n) { return or_dash(of[1, n]) (or_dash(of[1, n]) == or_dash(of[0, n]) ? "" : "," or_dash(of[0, n])) }
     END { for (k = 1; k <= count; k++) { n = order[k]; print n, or_dash(value[1, n]), or_dash(value[0, n]), both(expected, n), both(verdict, n) } }'

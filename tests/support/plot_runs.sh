@@ -132,9 +132,15 @@ pressure = 0.4
 compare = "riemann"
 [output]
 fields_interval = 0.1
+particles_interval = 0.1
 EOD
     "$build/flip" "$folder/tube.toml" --quiet --out "$folder/tube" 2>/dev/null || complain "tube: status $?"
     draws "$folder/tube" history results profile fields
+    sh common/figures/snapshots.sh "$folder/tube" particles | grep -q "title 'left'.*title 'right'" || complain "tube: the particles of the two gases have no key"
+    # What walls absorb and emit is no error of the energy.
+    "$build/cic" cic/cases/sheath.toml time.end=2 theory.compare=none --quiet --out "$folder/sheath" 2>/dev/null || complain "sheath: status $?"
+    sh common/figures/history.sh "$folder/sheath" | grep -q 'charge._error' || complain "sheath: the history lacks the error of the charge"
+    sh common/figures/history.sh "$folder/sheath" | grep -q 'energy._drift' && complain "sheath: energy between open walls is said to be 0"
     # Four grains.
     cat > "$folder/grains.toml" <<'EOD'
 [grid]
@@ -178,7 +184,7 @@ tools)
         "$build/flip" flip/cases/sod.toml grid.cells_x=$cells output.particles_interval=0.05 --quiet --out "$folder/$cells" 2>/dev/null
     done
     PLOTS=$folder/plots sh common/plot.sh compare "$folder/32" "$folder/64" > "$folder/told" 2>&1 || complain "compare: $(cat "$folder/told")"
-    is_picture "$(echo "$folder"/plots/compare_flip_*_32_flip_*_64.png)" || complain "comparing two runs drew nothing"
+    is_picture "$(echo "$folder"/plots/compare_flip--*--32_flip--*--64.png)" || complain "comparing two runs drew nothing"
     sh common/figures/compare.sh "$folder/32" "$folder/64" | grep -q '^L1_density [0-9.]* [0-9.]* 0±[0-9.]*,0±[0-9.]* PASS$' || complain "comparing does not show what is expected of each run"
     # Of a run that has ended it draws once.
     PLOTS=$folder/plots sh common/plot.sh watch "$folder/32" > "$folder/told" 2>&1 || complain "watch: $(cat "$folder/told")"
@@ -207,7 +213,19 @@ tools)
         said=$(sh common/plot.sh "$folder/damaged" 2>&1 | sed -n 's/^note: .*damaged, \(.*\) at t = 0.[12][0-9]* of 0.2[.].*/\1/p')
         [ "$ending $said" = " not ended" ] || [ "$ending $said" = "3 failed" ] || [ "$ending $said" = "130 stopped" ] || complain "of a run with status '$ending' plot.sh says '$said'"
     done
-    rm -rf out/figures/flip_*_damaged
+    # A run that goes on is not called by its earlier end, and one that was killed is not watched for ever.
+    flock "$folder/damaged/.lock" sh common/plot.sh "$folder/damaged" 2>&1 | grep -q '^note: .*, not ended at t' || complain "a run that goes on is said to have ended"
+    rm -f "$folder/damaged/summary.json"
+    PLOTS=$folder/plots timeout 60 sh common/plot.sh watch "$folder/damaged" > "$folder/told" 2>&1 || complain "a run that was killed is watched: $(cat "$folder/told")"
+    rm -rf out/figures/flip--*--damaged
+    # Folders whose names differ have pictures that differ; a name that gnuplot cannot read is refused.
+    mkdir -p "$folder/a/b"
+    for run in "$folder/a/b" "$folder/a_b" "$folder/a b" "$folder/a\\b"; do
+        cp -r "$folder/32/." "$run"
+        sh common/plot.sh "$run" 2>&1 | sed -n 's/^figure: \(.*\)\/history.png/\1/p; s/^gnuplot cannot read .* backslash .*/refused/p'
+    done > "$folder/told"
+    [ "$(sort -u "$folder/told" | grep -c .)" = 4 ] || complain "pictures of four runs lie in $(cat "$folder/told")"
+    rm -rf out/figures/flip--*--a--b out/figures/flip--*--a_b out/figures/flip--*"--a b"
     for script in history results; do
         gnuplot -e "run='$folder/32'; out='$folder/$script.svg'; ended=', stopped at t = 0.1 of 0.2'" common/figures/$script.gp
         grep -q 'stopped at t = 0.1 of 0.2<' "$folder/$script.svg" || complain "$script.gp does not say that the run was stopped"
@@ -242,6 +260,9 @@ tools)
     # What cannot be swept is refused with its name.
     refuses() { sweep "$1"; [ $? = 2 ] && [ "$(cat "$folder/told")" = "$2" ] || complain "sweep $1: $(cat "$folder/told")"; }
     for list in cells_x= cells_x=,20 cells_x=20, cells_x=20,,30; do refuses "$list" "'$list' lacks a value: KEY=VALUE,VALUE"; done
+    refuses --threads=2 "'--threads=2' is not KEY=VALUE,VALUE; what is the same for all runs follows --"
+    sweep cells_x=20 -- --threads 2
+    [ $? = 2 ] && grep -q "^'--threads' cannot follow --" "$folder/told" || complain "sweep -- --threads 2: $(cat "$folder/told")"
     refuses sead=1 "'sead' is no parameter of $build/flip"
     said=$(sh common/sweep.sh nix.toml seed=1 2>&1)
     [ "$said" = "no such case: nix.toml" ] || complain "sweep of a missing case: $said"
