@@ -623,6 +623,7 @@ install: all
 dist:
 	@mkdir -p build
 	git archive --prefix=particle-in-cell-$(VERSION)/ -o build/particle-in-cell-$(VERSION).tar.gz HEAD
+	@git diff --quiet HEAD || echo "note: what is not committed is not in it" >&2
 
 # ---- the book --------------------------------------------------------------------------------------
 
