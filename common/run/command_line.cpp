@@ -116,10 +116,6 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
         refuse(!forced, command.out_dir, ": holds a stopped run of another ",
                same ? "input: --restart " : "program: there --restart ",
                checkpoints.front().string(), " goes on with it, --force replaces it");
-    const char* const whose = there ? same ? "other input" : "other program" : " older program";
-    if (!ours && !found.empty() && is_first_rank() && !command.dry_run)
-        std::fprintf(stderr, "%s: replaces the run of an%s in %s\n", info.program.c_str(), whose,
-                     command.out_dir.c_str());
     for (const fs::path& path : checkpoints) {
         try {
             CheckpointReader checkpoint(info, path);
@@ -131,6 +127,10 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                 std::fprintf(stderr, "warning: %s; --resume begins before it\n", damaged.what());
         }
     }
+    const char* const whose = there ? same ? "other input" : "other program" : " older program";
+    if (!ours && !found.empty() && is_first_rank() && !command.dry_run)
+        std::fprintf(stderr, "%s: replaces the run of an%s in %s\n", info.program.c_str(), whose,
+                     command.out_dir.c_str());
     command.restart_step = 0;
 }
 
