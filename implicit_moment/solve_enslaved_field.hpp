@@ -11,37 +11,6 @@
 
 namespace implicit_moment {
 
-namespace detail {
-
-// Anderson's acceleration of E <- E + f(E): of the last few E and f the combination with the smallest f.
-// source: D. G. Anderson, J. ACM 12, 547 (1965)
-class Acceleration {
-   public:
-    // in: f, what E lacks by the plain iteration. out: E, the next guess
-    void next(const Eigen::VectorXd& f, Eigen::VectorXd& E) {
-        if (last_f_.size() > 0) {
-            const Eigen::Index k = count_++ % depth;
-            if (dE_.cols() == 0) dE_.setZero(E.size(), depth), df_ = dE_;
-            dE_.col(k) = E - last_E_;
-            df_.col(k) = f - last_f_;
-        }
-        last_E_ = E, last_f_ = f;
-        E += f;
-        const Eigen::Index known = std::min<Eigen::Index>(count_, depth);
-        if (known == 0) return;
-        const Eigen::VectorXd gamma = common::least_squares(df_.leftCols(known), f);
-        E -= (dE_.leftCols(known) + df_.leftCols(known)) * gamma;
-    }
-
-   private:
-    static constexpr Eigen::Index depth = 8;
-    Eigen::Index count_ = 0;
-    Eigen::MatrixXd dE_, df_;
-    Eigen::VectorXd last_E_, last_f_;
-};
-
-}  // namespace detail
-
 /// Solves field and particles together.
 /// in:     solver.mass of the same particles; particles and field at t^n
 /// out:    field.E_theta; B_theta, at its level; interleaved, both as particles feel them;
@@ -72,7 +41,7 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
     Eigen::VectorXd source = solver.source.all + by_J * solver.mass.J_hat.all, correction;
     keep_unknowns(grid, source.data());
     const double scale = std::max(common::safe_norm(source), common::safe_norm(solver.source.all));
-    detail::Acceleration faster;
+    common::AndersonAcceleration acceleration;
     constexpr double round_off = 1e-7;
     double best = 2;
     int best_iteration = 0;
@@ -103,7 +72,7 @@ inline FieldReport solve_enslaved_field(FieldSolver& solver, double dt,
         follow.tolerance = std::min(settings.tolerance, std::max(1e-14, 0.1 * report.residual));
         correction.setZero(left.all.size());
         report.iterations += detail::solve_linear_field(solver, a, 1e-3, correction).iterations;
-        faster.next(correction, field.E_theta.all);
+        acceleration.next(correction, field.E_theta.all);
         keep_unknowns(grid, field.E_theta.all.data());
         fill_ghosts(grid, electric, field.E_theta);
     }

@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/IterativeSolvers>
 
 #include "common/gmres.hpp"
+#include "common/least_squares.hpp"
 #include "common/newton_krylov.hpp"
 #include "flip/conjugate_gradients.hpp"
 #include "tests/support/any_numbers.hpp"
@@ -617,4 +618,22 @@ TEST_CASE("conjugate gradients without convergence return the true residual") {
     CHECK(result.iterations == 40);
     CHECK(result.reason == "the limit of iterations is reached");
     CHECK(std::abs(result.residual - true_residual(A, x, b)) <= 1e-13);
+}
+
+TEST_CASE("Anderson's acceleration solves a linear iteration in as many rounds as it has unknowns" *
+          doctest::description("mathematics")) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        constexpr int n = 6;
+        const MatrixXd A = random_matrix(n, seed);  // x <- A x + b itself runs away
+        const VectorXd b = VectorXd::Random(n),
+                       exact = (MatrixXd::Identity(n, n) - A).lu().solve(b);
+        VectorXd x = VectorXd::Zero(n);
+        common::AndersonAcceleration acceleration;
+        for (int round = 0; round <= n; ++round) acceleration.next(A * x + b - x, x);
+        CHECK((x - exact).norm() <= 1e-9 * exact.norm());
+        acceleration = {};  // begins anew, with another number of unknowns
+        VectorXd y = VectorXd::Zero(2);
+        for (int round = 0; round <= 2; ++round) acceleration.next(VectorXd::Constant(2, 3) - y, y);
+        CHECK((y - VectorXd::Constant(2, 3)).norm() <= 1e-12);
+    }
 }

@@ -10,6 +10,7 @@
 
 #include "cic/theory/comparison.hpp"
 #include "cic/theory/theory_of_case.hpp"
+#include "cic/theory/wave_causes.hpp"
 #include "common/theory/measure_modes.hpp"
 
 namespace cic {
@@ -81,281 +82,6 @@ inline void refuse_wave(const Case& parameters, const std::string& what, long mo
            " with a magnetic field is for gauss.sign = 1");
 }
 
-/// How fast particles bounce in the field of a wave, sqrt(|q| k E/m), of the lightest charge.
-inline double bounce_frequency(const Case& parameters, const Theory& theory, double field) {
-    double most = 0;
-    for (const SpeciesCase& s : parameters.species)
-        if (s.mobile()) most = std::max(most, std::fabs(s.charge) / s.mass);
-    return std::sqrt(most * wave_vector(parameters, theory.mode_x, theory.mode_z).size() * field);
-}
-
-/// Amplitude of the field at which an instability is visible: a tenth of the one in which the
-/// species with the largest |q|/m bounces as fast as the wave grows, |q| k E/m = gamma^2, where
-/// linear growth ends.
-inline double onset_field(const Case& parameters, const Theory& theory) {
-    const double gamma = theory.omega.imag();
-    return 0.1 * gamma * gamma / std::pow(bounce_frequency(parameters, theory, 1), 2);
-}
-
-/// Time of the onset, before the run: the seeded field grows at the rate of theory, where a wave and
-/// its mirror image run against each other both of them.
-/// out:    0 for a mode that does not grow or is not seeded
-inline double predicted_onset(const Case& parameters, const Theory& theory) {
-    const double growth = theory.omega.imag(), onset = onset_field(parameters, theory);
-    const double seed = theory.seed * (theory.mirrored && theory.omega.real() != 0 ? 2 : 1);
-    return growth > 0 && seed > 0 && onset > seed ? std::log(onset / seed) / growth : 0;
-}
-/// What the onset is, in words.
-inline const std::string onset_meaning = "the seed has grown to a tenth of what traps particles";
-
-/// The field that the noise of randomly placed particles has in the mode, rms, before it is screened.
-///   E_k^2 = sum_s (2 q_s n_s / k)^2 / N_s
-/// in:     later, whether quiet species count, too: their particles become as random
-inline double noise_field(const Case& parameters, const Theory& theory, bool later = true) {
-    const double k = wave_vector(parameters, theory.mode_x, theory.mode_z).size();
-    double squares = 0;
-    for (const SpeciesCase& s : parameters.species)
-        if (s.mobile() && (s.loading == "random" || (later && s.loading != "lattice")))
-            squares += std::pow(2 * s.charge * s.density / k, 2) /
-                       (double(s.particles_per_cell) * double(parameters.grid.x.cells) *
-                        double(parameters.dimensions == 2 ? parameters.grid.z.cells : 1));
-    return std::sqrt(squares);
-}
-
-/// Whether some species is perturbed in the followed mode, in either direction.
-inline bool is_seeded(const Case& parameters, const Theory& theory) {
-    for (const SpeciesCase& s : parameters.species)
-        for (const PerturbationCase& p : perturbations_of(parameters, s))
-            if (p.is_of(theory.mode_x, theory.mode_z) || p.is_of(-theory.mode_x, -theory.mode_z))
-                return true;
-    return false;
-}
-
-/// Where particles bounce faster in this field than the wave of theory grows or decays: that, and
-/// what to change; else nothing.
-inline std::string likely_bouncing(const Case& parameters, const Theory& theory, double field) {
-    const double bounce = bounce_frequency(parameters, theory, field),
-                 rate = std::fabs(theory.omega.imag());
-    if (!(bounce > rate && rate > 1e-3 * std::abs(theory.omega))) return "";
-    return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ", rate,
-                    ", and linear theory does not hold: lower the amplitude to ",
-                    format(rate * rate / (bounce * bounce)), " of it");
-}
-
-/// Cold plasma that moves through its mesh as a whole, along x or along z: aliases of its waves resonate with
-/// each other. Where that comes out of round-off by the end, that, and what to change; else nothing.
-/// Species with another drift may have a two-hundredth of omega_p^2, warm ones with the same drift a tenth:
-/// more of them, and other waves are faster.
-/// note:   The rate is that of mesh_dispersion() at 3/8 (tsc 7/16) of a wavelength in a cell, which hardly
-///         depends on the drift from 0.05 to 5 omega_p dx, or on the step; at 0.03 it is 0.6 of that. ngp has 0.36 to
-///         0.50.
-inline std::string likely_driven_by_mesh(const Case& parameters) {
-    if (parameters.conserving != "momentum" || parameters.gauss_sign < 0) return "";
-    const bool cic = parameters.weighting == "cic", tsc = parameters.weighting == "tsc";
-    const auto driven = [&](std::size_t direction, const common::Axis& axis,
-                            double SpeciesCase::*drift) -> std::string {
-        const auto omega2 = [](const SpeciesCase& s) {
-            return s.mobile() && s.profile != "point"
-                       ? s.charge * s.charge * s.mean_density() / s.mass
-                       : 0;
-        };
-        const auto cold = [&](const SpeciesCase& s) {
-            return s.temperatures(parameters.axis())[direction] == 0;
-        };
-        const SpeciesCase* main = nullptr;
-        for (const SpeciesCase& s : parameters.species)
-            if (cold(s) && omega2(s) > (main ? omega2(*main) : 0)) main = &s;
-        if (!main || !axis.periodic || parameters.turns(direction)) return "";
-        double own = 0, warm = 0, other = 0;
-        for (const SpeciesCase& s : parameters.species) {
-            const bool along = std::fabs(s.*drift - main->*drift) <= 0.01 * std::fabs(main->*drift);
-            (!along ? other : cold(s) ? own : warm) += omega2(s);
-        }
-        const double omega_p = std::sqrt(own),
-                     u = std::fabs(main->*drift) / (omega_p * axis.spacing()),
-                     rate = (tsc   ? 0.1
-                             : cic ? 0.2
-                                   : 0.4) *
-                            (u < 0.05 ? 0.6 : 1) * omega_p;
-        if (other > 0.005 * own || warm > 0.1 * own || !(u > 0.025) ||
-            !(rate * parameters.end > 15))
-            return "";
-        const std::string energy =
-            sentence("take method.scheme = \"energy\"",
-                     cic || tsc ? "" : " and method.weighting = \"cic\"", ", or ");
-        return sentence(
-            "aliases drive waves of two or three cells through cold plasma that moves, "
-            "growth = ",
-            rate, " or so: ", u > cold_beam_threshold(tsc ? 2 : 1) ? energy : "",
-            "give it a temperature with a Debye length of a third of a cell or more, and "
-            "loading = \"quiet\"");
-    };
-    const std::string along_x = driven(0, parameters.grid.x, &SpeciesCase::drift_x);
-    return !along_x.empty() || parameters.dimensions == 1
-               ? along_x
-               : driven(2, parameters.grid.z, &SpeciesCase::drift_z);
-}
-
-/// By how much the leapfrog changes a wave, relative: (omega dt)^2/24, where it grows with the frequency of
-/// the plasma, and (Omega dt)^2/12 of a gyration.
-inline double change_by_leapfrog(const Case& parameters, const Theory& theory) {
-    double omega2 = std::norm(theory.omega), gyration = 0;
-    for (const SpeciesCase& s : parameters.species) {
-        if (!s.mobile()) continue;
-        if (theory.omega.imag() > 0)
-            omega2 = std::max(omega2, s.charge * s.charge * s.mean_density() / s.mass);
-        if (parameters.magnetized())
-            gyration = std::max(gyration, std::fabs(s.charge) * parameters.B.size() / s.mass);
-    }
-    const double dt2 = parameters.dt * parameters.dt;
-    return std::max(omega2 * dt2 / 24, gyration * gyration * dt2 / 12);
-}
-
-/// Where another mode along x, or along z as the followed one, grows from its seed or from noise to the field
-/// in which it traps particles: that, and what to change; else nothing. When it saturates it drives all modes.
-inline std::string faster_mode(const Case& parameters, const Theory& theory) {
-    if (parameters.magnetized() || parameters.has_distributions()) return "";
-    const bool along_z = theory.mode_x == 0;
-    const long cells = (along_z ? parameters.grid.z : parameters.grid.x).cells;
-    Theory fastest;
-    fastest.omega = {0, std::max(theory.omega.imag(), 5 / parameters.end)};
-    Case any = parameters;
-    any.near = 0, any.model = "plasma";
-    for (long m = 1; m <= 32 && 2 * m < cells; ++m) try {
-            if (m == std::labs(along_z ? theory.mode_z : theory.mode_x) &&
-                (along_z || theory.mode_z == 0))
-                continue;
-            const Theory other =
-                theory_of_wave(any, along_z ? 0 : m, along_z ? m : 0, fastest.omega.imag());
-            const double growth = other.omega.imag();
-            if (!(growth > fastest.omega.imag())) continue;
-            const double seed = std::max(other.seed, noise_field(parameters, other));
-            if (seed * std::exp(growth * parameters.end) > onset_field(parameters, other))
-                fastest = other;
-        } catch (const common::InputError&) {  // none was found
-        }
-    if (fastest.mode_x == 0 && fastest.mode_z == 0) return "";
-    return sentence(mode_text(fastest.mode_x, fastest.mode_z), " of this box grows with ",
-                    fastest.omega.imag(), theory.omega.imag() > 0 ? ", faster, " : ", ",
-                    "and drives all others when it saturates: shorten the box to one wavelength of "
-                    "the mode that is followed, or the run");
-}
-
-/// Amplitudes that a wave begins with.
-struct WaveStart {
-    double field = 0;        // without noise
-    double noise = 0;        // of random numbers
-    double later_noise = 0;  // that a quiet start comes to, where it is more than the perturbation
-};
-/// That noise starts the wave, and what to change.
-inline std::string begins_in_noise(double noise, double seed) {
-    return sentence("noise starts the wave: it begins with ", noise, ", and the seed is ", seed,
-                    ": raise the amplitude or particles_per_cell");
-}
-
-/// What a wave that is not as in theory is most likely due to, and what to change.
-/// in:     deviation of the frequency from theory, relative; 0 where the rate is asked about
-inline std::string likely_cause(const Case& parameters, const Theory& theory,
-                                const WaveStart& start, double deviation = 0) {
-    const double field = start.field, noise = start.noise;
-    const double by_step = change_by_leapfrog(parameters, theory),
-                 k_dx =
-                     wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
-                 k_dz =
-                     wave_vector(parameters, 0, theory.mode_z).size() * parameters.grid.z.spacing();
-    // Where validate() takes that model.
-    const bool takes_mesh = !parameters.has_distributions() && !parameters.magnetized() &&
-                            parameters.gauss_sign > 0 &&
-                            (theory.mode_x == 0 || theory.mode_z == 0) &&
-                            (parameters.mode_x != 0 || parameters.mode_z != 0);
-    const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
-                                                      : parameters.frequency_tolerance,
-                 theta = std::max(k_dx, k_dz), slower = 2 - std::cos(k_dx / 2) - std::cos(k_dz / 2);
-    const bool conserving = parameters.scheme().energy_conserving,
-               by_mesh =
-                   parameters.model != "mesh" && !conserving && (theta > 0.5 || slower > tolerance);
-    const std::string driven = likely_driven_by_mesh(parameters),
-                      also = driven.empty() ? "" : "; and " + driven;
-    const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
-    const std::string leapfrog = sentence("the leapfrog changes the wave by ", by_step,
-                                          " or so: lower time.dt", exact, also);
-    if (noise > 0.1 * field)
-        return sentence("random particles have up to ", noise / field,
-                        " of the seeded field in this mode: raise amplitude or particles_per_cell, "
-                        "or take loading = \"quiet\"");
-    if (parameters.model != "mesh" && by_step > tolerance && (!by_mesh || by_step > slower))
-        return leapfrog;
-    // The mesh lowers a frequency whatever particles do beside.
-    if (!(by_mesh && deviation < 0 && deviation > -2 * slower)) {
-        const std::string bouncing = likely_bouncing(parameters, theory, field);
-        if (!bouncing.empty()) return bouncing;
-        const std::string faster = faster_mode(parameters, theory);
-        if (!faster.empty()) return faster;
-    }
-    if (by_mesh)
-        return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
-                        ", and the mesh changes the wave by 1 - cos(k dx/2)",
-                        k_dx > 0 && k_dz > 0 ? " of both directions = " : " = ", slower,
-                        " or so: raise ",
-                        k_dx > 0 && k_dz > 0 ? "grid.cells_x and cells_z"
-                        : k_dx > k_dz        ? "grid.cells_x"
-                                             : "grid.cells_z",
-                        exact, also);
-    if (parameters.model != "mesh" && by_step > 0.5 * tolerance) return leapfrog;
-    if (!driven.empty()) return driven;
-    if (theory.hidden != 0.0)
-        return sentence("another wave of this mode, omega = ", theory.hidden.real(),
-                        ", growth = ", theory.hidden.imag(),
-                        ", decays hardly faster, and the record has both: take another mode, or a "
-                        "perturbation that has less of it");
-    const bool cold = std::ranges::none_of(parameters.species, [&](const SpeciesCase& s) {
-        return s.mobile() && s.temperatures(parameters.axis())[theory.mode_x != 0 ? 0 : 2] > 0;
-    });
-    if (conserving && cold && theory.omega.imag() <= 0)
-        return "on the energy-conserving mesh a cold wave whose particles go from cell to cell "
-               "feeds others: lower the amplitude, or give it a temperature with a Debye length "
-               "of a third of a cell and loading = \"quiet\"";
-    if (start.later_noise > 0) return begins_in_noise(start.later_noise, theory.seed);
-    if (noise > 0)
-        return "the noise of particles is the most likely cause: raise particles_per_cell, or take "
-               "loading = \"quiet\"";
-    if (const double left = std::exp(theory.omega.imag() * parameters.end); left < 0.05)
-        return sentence("by the end ", left,
-                        " of the wave is left, and what hides it is noise: "
-                        "raise the amplitude or particles_per_cell");
-    return "another wave beside it, or too short a record, is the most likely cause: raise "
-           "time.end, or particles_per_cell where the start is quiet";
-}
-
-/// The wave of the mode of theory that is followed without theory.near: where one grows, the fastest.
-inline std::complex<double> fastest_of_mode(const Case& parameters, const Theory& theory) try {
-    Case any = parameters;
-    any.near = 0;
-    return parameters.near == 0 ? theory.omega
-                                : theory_of_wave(any, theory.mode_x, theory.mode_z).omega;
-} catch (const common::InputError&) {  // none was found
-    return theory.omega;
-}
-
-/// Where a wave of the same mode is much nearer to what was measured than the one that was looked for: which
-/// one; else nothing.
-inline std::string other_wave(const Case& parameters, const Theory& theory,
-                              const common::MeasuredMode& seen) try {
-    if (!seen.found || seen.omega.real() == 0) return "";
-    Case any = parameters;
-    any.near = theory.mirrored ? std::fabs(seen.omega.real()) : seen.omega.real();
-    const double other = theory_of_wave(any, theory.mode_x, theory.mode_z).omega.real(),
-                 off = std::fabs(theory.omega.real() - any.near),
-                 left = std::fabs(other - any.near);
-    const double near =
-        std::max(3 * seen.frequency_error(), parameters.frequency_tolerance * std::fabs(other));
-    if (!(off > 3 * seen.frequency_error() && left < 0.3 * off && left < near)) return "";
-    return sentence("what was measured is another wave of this mode, omega = ", other,
-                    ": take theory.near = ", other, ", or a perturbation that has less of it");
-} catch (const common::InputError&) {  // none was found
-    return "";
-}
-
 /// What a wave that theory does not damp loses: at most 2e-3 of omega, per time.
 inline void judge_undamped(const common::MeasuredMode& seen, double growth,
                            const std::string& where, Summary& summary) {
@@ -363,173 +89,204 @@ inline void judge_undamped(const common::MeasuredMode& seen, double growth,
                    2e-3 * seen.frequency(), where);
 }
 
-/// A wave or an instability against the dispersion relation: frequency, growth or damping by
-/// measure_mode(); of what grows the onset as well.
+/// The record of a run beside the wave of theory, and what was measured of it.
+struct WaveRecord {
+    Theory theory;
+    std::vector<double> times, amplitude;  // |E_k|
+    common::ModeSearch search;
+    common::MeasuredMode seen;
+    bool grows = false, seeded = false;
+    double onset = 0;  // predicted time; 0 where there is none
+    double level = 0;  // field of the onset
+    double noise = 0,
+           later_noise = 0;  // of particles in this mode: at the start, and of quiet ones later
+    double early = 0;        // the largest field, or noise, before the measured window
+    double largest_at_start = 0;  // of the first tenth of the record
+    bool noisy = false;           // noise has started a growing wave beside the perturbation
+    bool in_noise = false;        // above the level of the onset
+    bool grows_right = false;     // as in theory, within error and tolerance
+    WaveStart start;
+    std::string covered;  // by which other wave of this mode, and what to change
+    std::string told;     // which other wave of this mode was measured, and what to change
+    std::string cause;    // of what is not as in theory
+
+    double growth() const { return theory.omega.imag(); }
+    double frequency() const { return std::fabs(theory.omega.real()); }
+    double e_foldings() const { return growth() * (seen.end - seen.begin); }
+    double periods() const { return frequency() * (seen.end - seen.begin) / (2 * pi); }
+    bool swings() const { return frequency() > 0 && frequency() >= 0.01 * std::fabs(growth()); }
+    /// What the measured frequency has beyond that of theory; of waves in both directions either.
+    double frequency_off() const {
+        return theory.mirrored ? seen.frequency() - frequency()
+                               : seen.omega.real() - theory.omega.real();
+    }
+    std::string where() const { return theory.source + "; measured " + seen.window; }
+};
+
+/// Measures the followed mode by measure_mode().
 ///   the record begins when the transient of the start is over: a growth time, or a period
 ///   what grows ends at a tenth of its maximum
-inline void compare_wave(const Case& parameters, const History& history, Summary& summary) {
-    const Theory theory = theory_of_wave(parameters);
-    const auto times = history.column("time");
+inline WaveRecord measure_wave(const Case& parameters, const History& history) {
+    WaveRecord w;
+    w.theory = theory_of_wave(parameters);
+    w.times = history.column("time");
     const std::vector<std::complex<double>> mode = history.complex_column("mode");
-    std::vector<double> amplitude;
-    for (const std::complex<double> E_k : mode) amplitude.push_back(std::abs(E_k));
-    const double growth = theory.omega.imag(), frequency = std::fabs(theory.omega.real());
-    summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
-    summary.result_info("theory_growth", growth, omega_p_unit, theory.source);
-    summary.result_info("mode_x", double(theory.mode_x), "", "followed");
-    const double start = *std::max_element(
-        amplitude.begin(),
-        amplitude.begin() + static_cast<std::ptrdiff_t>(1 + amplitude.size() / 10));
-    const bool grows = growth > 1e-3 * std::abs(theory.omega) || growth * times.back() > 3,
-               seeded = is_seeded(parameters, theory);
-    common::ModeSearch search;
-    search.expected = {theory.omega};
-    if (theory.mirrored) search.expected.push_back(-std::conj(theory.omega));
-    const double onset = predicted_onset(parameters, theory);
-    const double noise = noise_field(parameters, theory, false);
-    const double seed = theory.seed * (theory.mirrored ? 2 : 1);
-    const double field = seed > 0 ? seed : start;
+    for (const std::complex<double> E_k : mode) w.amplitude.push_back(std::abs(E_k));
+    w.largest_at_start = *std::max_element(
+        w.amplitude.begin(),
+        w.amplitude.begin() + static_cast<std::ptrdiff_t>(1 + w.amplitude.size() / 10));
+    const double growth = w.growth(), end = w.times.back();
+    w.grows = growth > 1e-3 * std::abs(w.theory.omega) || growth * end > 3;
+    w.seeded = is_seeded(parameters, w.theory);
+    w.onset = predicted_onset(parameters, w.theory);
+    w.level = onset_field(parameters, w.theory);
+    w.noise = noise_field(parameters, w.theory, false);
+    w.later_noise = noise_field(parameters, w.theory);
+    const double seed = w.theory.seed * (w.theory.mirrored ? 2 : 1),
+                 field = seed > 0 ? seed : w.largest_at_start;
+
     const std::complex<double> fastest =
-        grows || !seeded ? theory.omega : fastest_of_mode(parameters, theory);
-    const bool other = std::abs(fastest - theory.omega) > 1e-6 * std::abs(fastest),
-               covered = !grows && other && fastest.imag() * times.back() > 1;
-    const std::string covers = sentence(
-        "another wave of this mode grows, with ", fastest.imag(), " at omega = ", fastest.real(),
-        ", and covers this one: take theory.near = ", fastest.real());
-    const std::string bouncing = likely_bouncing(parameters, theory, field);
-    if (!bouncing.empty()) search.faded = bouncing;
-    search.begin = grows ? 1 / growth : 2 * pi / frequency;
-    search.below_maximum = 0.1;
-    if (onset > search.begin) search.end = onset;
-    const bool swings = frequency > 0 && frequency >= 0.01 * std::fabs(growth);
-    common::MeasuredMode seen =
-        grows || swings ? common::measure_mode(times, mode, search) : common::MeasuredMode{};
+        w.grows || !w.seeded ? w.theory.omega : fastest_of_mode(parameters, w.theory);
+    const bool other = std::abs(fastest - w.theory.omega) > 1e-6 * std::abs(fastest);
+    if (!w.grows && other && fastest.imag() * end > 1)
+        w.covered = sentence("another wave of this mode grows, with ", fastest.imag(),
+                             " at omega = ", fastest.real(),
+                             ", and covers this one: take theory.near = ", fastest.real());
+
+    w.search.expected = {w.theory.omega};
+    if (w.theory.mirrored) w.search.expected.push_back(-std::conj(w.theory.omega));
+    const std::string bouncing = likely_bouncing(parameters, w.theory, field);
+    if (!bouncing.empty()) w.search.faded = bouncing;
+    w.search.begin = w.grows ? 1 / growth : 2 * pi / w.frequency();
+    w.search.below_maximum = 0.1;
+    if (w.onset > w.search.begin) w.search.end = w.onset;
+    if (w.grows || w.swings()) w.seen = common::measure_mode(w.times, mode, w.search);
     // Of a wave that decays, noise that rings as it does moves the phase: no fit can tell it apart.
-    if (!grows && seed > 0) {
+    if (!w.grows && seed > 0) {
         const double moved =
-            2 * noise / seed * std::max(std::fabs(growth), 1 / (seen.end - seen.begin));
-        seen.error = {std::hypot(seen.error.real(), moved), std::hypot(seen.error.imag(), moved)};
+            2 * w.noise / seed * std::max(std::fabs(growth), 1 / (w.seen.end - w.seen.begin));
+        w.seen.error = {std::hypot(w.seen.error.real(), moved),
+                        std::hypot(w.seen.error.imag(), moved)};
     }
-    const double level = onset_field(parameters, theory), length = seen.end - seen.begin,
-                 folds = growth * length, periods = frequency * length / (2 * pi);
-    double early = noise;
-    for (std::size_t n = 0; n < times.size() && times[n] < search.begin; ++n)
-        early = std::max(early, amplitude[n]);
+
+    w.early = w.noise;
+    for (std::size_t n = 0; n < w.times.size() && w.times[n] < w.search.begin; ++n)
+        w.early = std::max(w.early, w.amplitude[n]);
     // What the perturbation has by search.begin, a growth time, without noise.
-    const double own = std::max(amplitude.front(), std::exp(1.0) * theory.seed),
-                 later_noise = noise_field(parameters, theory);
-    const bool noisy = grows && later_noise > 0 && early > 1.05 * own;
-    const WaveStart begin{field, noise, noisy && early > 2 * own ? early : 0};
-    const std::string told = grows ? "" : other_wave(parameters, theory, seen),
-                      cause = !told.empty() ? told
-                              : covered     ? covers
-                                            : likely_cause(parameters, theory, begin);
-    summary.hint(cause);
-    // What begins above the onset has saturated before it can be measured, or noise has covered it.
-    const double begins = std::max(noise, amplitude.front()),
-                 too_fast = seen.growth() - 3 * seen.growth_error() - std::max(growth, 0.0);
-    const bool in_noise = noisy && noise < level && std::min(early, later_noise) > level &&
-                          !(seen.found && too_fast > 0);
-    const std::string too_high =
-        in_noise ? sentence("the noise of particles comes to ", early,
-                            ", above the field of the onset, ", level,
-                            ": raise particles_per_cell, or follow a mode that grows faster")
-        : noise < level && theory.seed > 0
-            ? sentence("the perturbation begins with ", early, ", above the field of the onset, ",
-                       level, ", and only ", theory.seed,
-                       " of it is the growing wave: lower the amplitude ", early / level,
-                       " times or more")
-            : sentence("noise begins with ", begins, ", above the field of the onset, ", level,
-                       ": take loading = \"quiet\", or raise particles_per_cell");
+    const double own = std::max(w.amplitude.front(), std::exp(1.0) * w.theory.seed);
+    w.noisy = w.grows && w.later_noise > 0 && w.early > 1.05 * own;
+    w.start = {field, w.noise, w.noisy && w.early > 2 * own ? w.early : 0};
+    if (!w.grows) w.told = other_wave(parameters, w.theory, w.seen);
+    w.cause = !w.told.empty()      ? w.told
+              : !w.covered.empty() ? w.covered
+                                   : likely_cause(parameters, w.theory, w.start);
+    return w;
+}
+
+/// Why nothing was measured of a wave that begins above the field of its onset.
+inline std::string begins_too_high(const WaveRecord& w) {
+    if (w.in_noise)
+        return sentence("the noise of particles comes to ", w.early,
+                        ", above the field of the onset, ", w.level,
+                        ": raise particles_per_cell, or follow a mode that grows faster");
+    const double begins = std::max(w.noise, w.amplitude.front());
+    if (w.noise < w.level && w.theory.seed > 0)
+        return sentence("the perturbation begins with ", begins, ", above the field of the onset, ",
+                        w.level, ", and only ", w.theory.seed,
+                        " of it is the growing wave: lower the amplitude ", w.early / w.level,
+                        " times or more");
+    return sentence("noise begins with ", begins, ", above the field of the onset, ", w.level,
+                    ": take loading = \"quiet\", or raise particles_per_cell");
+}
+
+/// Takes back what was measured where noise, or another wave, is in the place of that of theory.
+inline void doubt_wave(const Case& parameters, WaveRecord& w) {
+    common::MeasuredMode& seen = w.seen;
+    const bool too_fast = seen.growth() - 3 * seen.growth_error() > std::max(w.growth(), 0.0);
+    w.in_noise = w.noisy && w.noise < w.level && std::min(w.early, w.later_noise) > w.level &&
+                 !(seen.found && too_fast);
+    w.grows_right = std::fabs(seen.growth() - w.growth()) <=
+                    seen.growth_error() + parameters.growth_tolerance * w.growth();
     // Far from the frequency of theory, and growing no faster, is another wave, or noise.
-    const double off =
-        theory.mirrored ? seen.frequency() - frequency : seen.omega.real() - theory.omega.real();
-    const bool grows_right = std::fabs(seen.growth() - growth) <=
-                             seen.growth_error() + parameters.growth_tolerance * growth,
-               elsewhere = seen.found && !(too_fast > 0) &&
-                           std::fabs(off) > 0.3 * std::abs(theory.omega) + seen.frequency_error();
-    if (grows && (begins > level || in_noise) &&
-        (!grows_right || (elsewhere && seen.growth_error() > growth)))
-        seen.found = false, seen.reason = too_high, seen.over = false;
-    else if (elsewhere && later_noise > 0.3 * field && periods < search.periods &&
-             std::fabs(folds) < search.e_foldings)
+    const bool elsewhere =
+        seen.found && !too_fast &&
+        std::fabs(w.frequency_off()) > 0.3 * std::abs(w.theory.omega) + seen.frequency_error();
+    // What begins above the onset has saturated before it can be measured, or noise has covered it.
+    const bool too_high = std::max(w.noise, w.amplitude.front()) > w.level || w.in_noise;
+    if (w.grows && too_high && (!w.grows_right || (elsewhere && seen.growth_error() > w.growth())))
+        seen.found = false, seen.reason = begins_too_high(w), seen.over = false;
+    else if (elsewhere && w.later_noise > 0.3 * w.start.field && w.periods() < w.search.periods &&
+             std::fabs(w.e_foldings()) < w.search.e_foldings)
         seen.found = false, seen.over = false,
-        seen.reason = sentence("cannot be measured, because the wave of theory has ", periods,
-                               " periods and ", std::fabs(folds), " e-foldings, below ",
-                               search.periods, " and ", search.e_foldings, ", ", seen.window,
+        seen.reason = sentence("cannot be measured, because the wave of theory has ", w.periods(),
+                               " periods and ", std::fabs(w.e_foldings()), " e-foldings, below ",
+                               w.search.periods, " and ", w.search.e_foldings, ", ", seen.window,
                                ", and omega = ", seen.omega.real(),
                                " is seen in its place: raise time.end, and the amplitude or "
                                "particles_per_cell where noise hides it");
-    const std::string where = theory.source + "; measured " + seen.window;
-    const auto report = [&](const std::string& name, double value, double error, double expected,
-                            double tolerance) {
-        if (seen.found)
-            summary.result(name, {value / expected, error / std::fabs(expected)}, "", 1, tolerance,
-                           where);
-        else
-            summary.not_measured(name,
-                                 seen.reason + (!seen.over ? ""
-                                                : seeded   ? ": lower the amplitude"
+}
+
+/// A measured number of the wave over that of theory.
+inline void judge_number(const WaveRecord& w, const std::string& name, double value, double error,
+                         double expected, double tolerance, Summary& summary) {
+    if (w.seen.found)
+        summary.result(name, {value / expected, error / std::fabs(expected)}, "", 1, tolerance,
+                       w.where());
+    else
+        summary.not_measured(name,
+                             w.seen.reason + (!w.seen.over ? ""
+                                              : w.seeded   ? ": lower the amplitude"
                                                            : ": raise particles_per_cell, so that "
                                                              "noise starts it lower"));
-    };
-    if (seen.found && (grows || seeded)) {
-        summary.result_info("omega", {seen.omega.real(), seen.frequency_error()}, omega_p_unit,
-                            where);
-        summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
-    }
-    // The frequency has a cause of its own, and its single wave has its direction, too.
-    const auto report_frequency = [&] {
-        const double deviation = off / (theory.mirrored ? frequency : theory.omega.real());
-        if (seen.found && told.empty() && !covered &&
-            deviation < -parameters.frequency_tolerance - seen.frequency_error() / frequency)
-            summary.hint(likely_cause(parameters, theory, begin, deviation));
-        else
-            summary.hint(cause);
-        report("omega_over_theory", theory.mirrored ? seen.frequency() : seen.omega.real(),
-               seen.frequency_error(), theory.mirrored ? frequency : theory.omega.real(),
-               parameters.frequency_tolerance);
-        summary.hint(cause);
-    };
-    if (grows) {
-        if (seen.found && folds < 1 && likely_driven_by_mesh(parameters).empty())
-            summary.hint(sentence("the wave grows only by exp(", folds, ") in the ", periods,
-                                  " periods that are measured at a time: raise "
-                                  "theory.growth_tolerance, or look at the onset"));
-        report("growth_over_theory", seen.growth(), seen.growth_error(), growth,
-               parameters.growth_tolerance);
-        if (frequency > 0.1 * growth) report_frequency();
-        const double allowed = 0.5 / growth, at = common::time_at_level(times, amplitude, level);
-        if (onset == 0 || times.back() <= onset + allowed) return;
-        const double reached = std::isnan(at) ? times.back() : at;
-        const bool late = std::fabs(reached - onset) > allowed;
-        if (noise > 0.3 * theory.seed || (noisy && seen.found && grows_right && late))
-            summary.not_measured("onset", begins_in_noise(early, theory.seed));
-        else if (early > level)
-            summary.not_measured("onset", too_high);
-        else if (const std::string faster = faster_mode(parameters, theory);
-                 late && !faster.empty())
-            summary.not_measured("onset", faster);
-        else
-            summary.result("onset", reached, "1/omega_p", onset, allowed, onset_meaning);
-        return;
-    }
+}
 
-    const bool damped = growth < -1e-3 * frequency;
-    if (!seeded) {
-        for (const char* name : {"largest_over_start", "omega_over_theory", "damping_over_theory"})
-            if (damped || name[0] != 'd')
-                summary.not_measured(name,
-                                     "no species is perturbed in this mode, and noise and "
-                                     "round-off alone are no wave to measure: give one an "
-                                     "amplitude");
-        return;
-    }
-    // Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
-    const double largest = std::ranges::max(amplitude) / start,
-                 part = noise_field(parameters, theory) / start,
-                 allowed = 1.2 * std::exp(std::max(0.0, growth) * times.back());
-    if (!(start > 0))
+/// The frequency, which has a cause of its own where it is low; that of a single wave has its sign.
+inline void judge_frequency(const Case& parameters, const WaveRecord& w, Summary& summary) {
+    const common::MeasuredMode& seen = w.seen;
+    const double expected = w.theory.mirrored ? w.frequency() : w.theory.omega.real(),
+                 deviation = w.frequency_off() / expected;
+    if (seen.found && w.told.empty() && w.covered.empty() &&
+        deviation < -parameters.frequency_tolerance - seen.frequency_error() / w.frequency())
+        summary.hint(likely_cause(parameters, w.theory, w.start, deviation));
+    judge_number(w, "omega_over_theory", w.theory.mirrored ? seen.frequency() : seen.omega.real(),
+                 seen.frequency_error(), expected, parameters.frequency_tolerance, summary);
+    summary.hint(w.cause);
+}
+
+/// What grows: its rate, its frequency where it has one, and when it is seen.
+inline void judge_growing_wave(const Case& parameters, const WaveRecord& w, Summary& summary) {
+    const double growth = w.growth();
+    if (w.seen.found && w.e_foldings() < 1 && likely_driven_by_mesh(parameters).empty())
+        summary.hint(sentence("the wave grows only by exp(", w.e_foldings(), ") in the ",
+                              w.periods(),
+                              " periods that are measured at a time: raise "
+                              "theory.growth_tolerance, or look at the onset"));
+    judge_number(w, "growth_over_theory", w.seen.growth(), w.seen.growth_error(), growth,
+                 parameters.growth_tolerance, summary);
+    summary.hint(w.cause);
+    if (w.frequency() > 0.1 * growth) judge_frequency(parameters, w, summary);
+
+    const double allowed = 0.5 / growth, end = w.times.back(),
+                 at = common::time_at_level(w.times, w.amplitude, w.level);
+    if (w.onset == 0 || end <= w.onset + allowed) return;
+    const double reached = std::isnan(at) ? end : at;
+    const bool late = std::fabs(reached - w.onset) > allowed;
+    if (w.noise > 0.3 * w.theory.seed || (w.noisy && w.seen.found && w.grows_right && late))
+        summary.not_measured("onset", begins_in_noise(w.early, w.theory.seed));
+    else if (w.early > w.level)
+        summary.not_measured("onset", begins_too_high(w));
+    else if (const std::string faster = faster_mode(parameters, w.theory); late && !faster.empty())
+        summary.not_measured("onset", faster);
+    else
+        summary.result("onset", reached, "1/omega_p", w.onset, allowed, onset_meaning);
+}
+
+/// Where nothing should grow, nothing may; but a quiet start does not stay quieter than noise.
+inline void judge_largest(const Case& parameters, const WaveRecord& w, Summary& summary) {
+    const double largest = std::ranges::max(w.amplitude) / w.largest_at_start,
+                 part = w.later_noise / w.largest_at_start,
+                 allowed = 1.2 * std::exp(std::max(0.0, w.growth()) * w.times.back());
+    if (!(w.largest_at_start > 0))
         summary.not_measured(
             "largest_over_start",
             parameters.weighting == "ngp"
@@ -538,9 +295,9 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                   "begins with zero: raise the amplitude or particles_per_cell, or take \"cic\""
                 : "cannot be measured, because the charges of the perturbations cancel and the "
                   "record begins with zero: perturb one species alone");
-    else if (covered)
-        summary.not_measured("largest_over_start", covers);
-    else if (const std::string faster = faster_mode(parameters, theory);
+    else if (!w.covered.empty())
+        summary.not_measured("largest_over_start", w.covered);
+    else if (const std::string faster = faster_mode(parameters, w.theory);
              largest > allowed && !faster.empty())
         summary.not_measured("largest_over_start", faster);
     else if (largest > allowed && largest < allowed + 3 * part)
@@ -551,19 +308,56 @@ inline void compare_wave(const Case& parameters, const History& history, Summary
                 part, " of the wave: raise amplitude or particles_per_cell"));
     else
         summary.result_at_most("largest_over_start", largest, "", allowed,
-                               growth > 0 ? "the growth of theory" : "no growing root");
-    if (!swings) {
+                               w.growth() > 0 ? "the growth of theory" : "no growing root");
+}
+
+/// What does not grow: that it does not, its frequency, and its damping or that it has none.
+inline void judge_lasting_wave(const Case& parameters, const WaveRecord& w, Summary& summary) {
+    const bool damped = w.growth() < -1e-3 * w.frequency();
+    if (!w.seeded) {
+        for (const char* name : {"largest_over_start", "omega_over_theory", "damping_over_theory"})
+            if (damped || name[0] != 'd')
+                summary.not_measured(name,
+                                     "no species is perturbed in this mode, and noise and "
+                                     "round-off alone are no wave to measure: give one an "
+                                     "amplitude");
+        return;
+    }
+    judge_largest(parameters, w, summary);
+    if (!w.swings()) {
         summary.not_measured("omega_over_theory",
                              "the mode of theory is too damped to swing: take a smaller "
                              "theory.mode_x, or a colder plasma");
         return;
     }
-    report_frequency();
+    judge_frequency(parameters, w, summary);
     if (damped)
-        report("damping_over_theory", seen.growth(), seen.growth_error(), growth,
-               parameters.growth_tolerance);
-    else if (seen.found)
-        judge_undamped(seen, growth, where, summary);
+        judge_number(w, "damping_over_theory", w.seen.growth(), w.seen.growth_error(), w.growth(),
+                     parameters.growth_tolerance, summary);
+    else if (w.seen.found)
+        judge_undamped(w.seen, w.growth(), w.where(), summary);
+}
+
+/// A wave or an instability against the dispersion relation: frequency, growth or damping, and of
+/// what grows the onset as well.
+inline void compare_wave(const Case& parameters, const History& history, Summary& summary) {
+    WaveRecord w = measure_wave(parameters, history);
+    const Theory& theory = w.theory;
+    summary.result_info("theory_omega", theory.omega.real(), omega_p_unit, theory.source);
+    summary.result_info("theory_growth", theory.omega.imag(), omega_p_unit, theory.source);
+    summary.result_info("mode_x", double(theory.mode_x), "", "followed");
+    doubt_wave(parameters, w);
+    summary.hint(w.cause);
+    if (w.seen.found && (w.grows || w.seeded)) {
+        summary.result_info("omega", {w.seen.omega.real(), w.seen.frequency_error()}, omega_p_unit,
+                            w.where());
+        summary.result_info("growth", {w.seen.growth(), w.seen.growth_error()}, omega_p_unit,
+                            w.where());
+    }
+    if (w.grows)
+        judge_growing_wave(parameters, w, summary);
+    else
+        judge_lasting_wave(parameters, w, summary);
 }
 
 /// Frequency, growth and onset of the followed mode in words, before the run.

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "common/least_squares.hpp"
 #include "mpm_explicit/contact.hpp"
 #include "mpm_implicit/apply_loads.hpp"
 #include "mpm_implicit/solver/ghost_vectors.hpp"
@@ -34,8 +35,8 @@ struct PairUpdate {
 class ActiveSet {
    public:
     ContactList list;
-    std::vector<PairUpdate> updates;         // one per pair
-    std::vector<Vector> frictions, targets;  // of all pairs, since the set last changed
+    std::vector<PairUpdate> updates;           // one per pair
+    common::AndersonAcceleration of_friction;  // since the set last changed
 
     /// Detects contact, and guesses the set: the states of the last step, and pairs that approach.
     /// in:     where, with v_0 to judge approach by; last, the closed pairs of the last step,
@@ -43,7 +44,7 @@ class ActiveSet {
     void find(const Contact& contact, const GrainNodes& where, const std::vector<Bond>& bonds,
               const std::vector<ForceControl>& controls, const std::vector<ActivePair>& last) {
         list.find(contact.detection(), where, bonds, [](ContactNode&) {});
-        frictions.clear(), targets.clear();
+        of_friction = {};
         updates.clear();
         ContactStorage storage;
         for (const ContactList::Node& range : list.nodes) {

@@ -11,7 +11,6 @@
 
 #include <cmath>
 
-#include "common/least_squares.hpp"
 #include "mpm_implicit/solver/active_set.hpp"
 
 namespace mpm_implicit {
@@ -24,33 +23,18 @@ struct ActiveSetChange {
 };
 
 /// The friction x of slipping pairs that the next solution is to have. Friction makes pressure, and
-/// pressure the friction g(x) that ought to be, linear in x while the set stays the same. From the
-/// solutions since then the next x is taken where their hyperplane is nearest to g(x) = x:
-///   x = g_k - sum_j gamma_j (g_j+1 - g_j), the gamma_j that make f_k - sum_j gamma_j (f_j+1 - f_j)
-///   smallest, f = g - x
+/// pressure the friction g(x) that ought to be, linear in x while the set stays the same: from the
+/// solutions since then the next x is extrapolated.
 /// in:     same, the set of the solution just made is that of the next
-/// source: Anderson, J. ACM 12, 547 (1965).
 inline void extrapolate_friction(bool same, ActiveSet& set) {
-    constexpr std::size_t most = 8;
-    if (!same) return set.frictions.clear(), set.targets.clear();
+    if (!same) return void(set.of_friction = {});
     const std::size_t count = set.list.pairs.size();
     Vector x = Vector::Zero(long(count)), g = x;
     for (std::size_t k = 0; k < count; ++k)
         if (set.list.pairs[k].state == ContactState::slip)
             x[long(k)] = set.list.pairs[k].lambda_t, g[long(k)] = set.updates[k].target;
-    set.frictions.push_back(x), set.targets.push_back(g);
-    if (set.frictions.size() > most)
-        set.frictions.erase(set.frictions.begin()), set.targets.erase(set.targets.begin());
-    const long steps = long(set.frictions.size()) - 1;
-    Vector next = g;
-    if (steps > 0) {
-        Eigen::MatrixXd df(long(count), steps), dg(long(count), steps);
-        for (long j = 0; j < steps; ++j) {
-            dg.col(j) = set.targets[j + 1] - set.targets[j];
-            df.col(j) = dg.col(j) - (set.frictions[j + 1] - set.frictions[j]);
-        }
-        next -= dg * common::least_squares(df, g - x);
-    }
+    Vector next = x;
+    set.of_friction.next(g - x, next);
     for (std::size_t k = 0; k < count; ++k) {
         if (set.list.pairs[k].state != ContactState::slip) continue;
         const double now = next[long(k)], is = x[long(k)], to = g[long(k)];
