@@ -586,8 +586,8 @@ TEST_CASE("waterbag kappa and ring have the waves of their distributions" *
 
 TEST_CASE("an ion acoustic wave has its frequency and its damping" *
           doctest::description("physics")) {
-    facts::check_results(
-        facts::run_into("cic_ion_acoustic", "cic", "cic/cases/ion_acoustic.toml"), 4);
+    facts::check_results(facts::run_into("cic_ion_acoustic", "cic", "cic/cases/ion_acoustic.toml"),
+                         4);
 }
 
 TEST_CASE("a damped wave that nothing but noise starts is not judged" *
