@@ -15,25 +15,21 @@ namespace common {
 
 std::size_t utf8_length(std::string_view text, std::size_t k) {
     const auto byte = [&](std::size_t n) {
-        return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U;
+        return k + n < text.size() ? static_cast<unsigned char>(text[k + n]) : 0U;
     };
-    const auto follows = [&](std::size_t n) { return (byte(n) & 0xC0U) == 0x80U; };
-    const unsigned first = byte(k);
-    if (first < 0x80) return 1;
-    if (first >= 0xC2 && first <= 0xDF) return follows(k + 1) ? 2 : 0;
-    if (first >= 0xE0 && first <= 0xEF) {
-        const unsigned second = byte(k + 1);
-        const bool short_form = first == 0xE0 && second < 0xA0,
-                   surrogate = first == 0xED && second > 0x9F;
-        return follows(k + 1) && follows(k + 2) && !short_form && !surrogate ? 3 : 0;
-    }
-    if (first >= 0xF0 && first <= 0xF4) {
-        const unsigned second = byte(k + 1);
-        const bool short_form = first == 0xF0 && second < 0x90,
-                   beyond = first == 0xF4 && second > 0x8F;
-        return follows(k + 1) && follows(k + 2) && follows(k + 3) && !short_form && !beyond ? 4 : 0;
-    }
-    return 0;
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    if (length > 1 && (first < 0xC2 || first > 0xF4)) return 0;
+    // No longer form than needed, no surrogate, nothing above U+10FFFF.
+    const unsigned low = first == 0xE0   ? 0xA0
+                         : first == 0xF0 ? 0x90
+                                         : 0x80,
+                   high = first == 0xED   ? 0x9F
+                          : first == 0xF4 ? 0x8F
+                                          : 0xBF;
+    for (std::size_t n = 1; n < length; ++n)
+        if (byte(n) < (n == 1 ? low : 0x80) || byte(n) > (n == 1 ? high : 0xBF)) return 0;
+    return length;
 }
 
 namespace {
