@@ -25,6 +25,13 @@ struct Outline {
     std::vector<Point> corners;  // of the polygon, counterclockwise; it may be concave
 };
 
+/// Whether all sides of an outline are along x or y, and it has four.
+inline bool is_upright_box(const Outline& outline) {
+    const std::vector<Point>& c = outline.corners;
+    return c.size() == 4 && ((c[0].x == c[1].x && c[1].y == c[2].y && c[2].x == c[3].x) ||
+                             (c[0].y == c[1].y && c[1].x == c[2].x && c[2].y == c[3].y));
+}
+
 /// Whether a number is finite, and its square too.
 inline bool usable(double value) { return std::isfinite(value) && std::fabs(value) < 1e100; }
 
