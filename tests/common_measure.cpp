@@ -251,6 +251,13 @@ TEST_CASE("what cannot be measured says why") {
     CHECK(says(reason(std::vector<Complex>(4, 3.0), 0.1, wave), "fewer than 8 rows"));
     CHECK(says(reason(record_of({"", both(1.0), {1, 1}, 150, 0.1, {}}, 0, 0), 0.1, wave),
                " e-foldings, below 3 and 3, "));
+    // Periods that are 2.9985 are three to a thousandth, and what does not grow is never over.
+    const auto three = record_of({"", both(1.0075), {1, 1}, 188, 0.1, {}}, 0, 0);
+    std::vector<double> rows;
+    for (std::size_t n = 0; n < three.size(); ++n) rows.push_back(0.1 * double(n));
+    const MeasuredMode nearly = measure_mode(rows, three, {.expected = both({1.0075, 1e-40})});
+    CHECK(nearly.found);
+    CHECK(!nearly.over);
     CHECK(says(reason(record_of({"", both(1.0), {1, 1}, 400, 0.1, {}}, 0, 0), 0.1,
                       {.expected = both(1.0), .begin = 39.5}),
                "rows of the history are between"));

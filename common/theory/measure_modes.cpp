@@ -426,7 +426,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     const double ended = times[std::size_t(std::max(0L, rows.end - 1))],
                  left = search.end < times.back() ? HUGE_VAL : times.back() - ended,
                  e_folds = -1.5 * std::log(search.below_maximum);
-    result.over = wanted.growth * left > e_folds;
+    result.over = search.below_maximum < 1 && wanted.growth * left > e_folds;
     result.high &= wanted.growth * (times.back() - std::max(search.begin, times[0])) > e_folds;
     std::string cure = result.over   ? "; growth is over then"
                        : result.high ? "; it begins near its maximum: lower what it starts from"
@@ -493,7 +493,7 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     result.share = 1 - wave.rest / samples.squaredNorm();
     const double turns = result.frequency() * length / (2 * pi),
                  folds = std::abs(result.growth()) * length;
-    if (turns < search.periods && folds < search.e_foldings)
+    if (turns < 0.999 * search.periods && folds < 0.999 * search.e_foldings)
         return cannot("it has " + format(turns) + " periods and " + format(folds) +
                       " e-foldings, below " + format(search.periods) + " and " +
                       format(search.e_foldings) + ", " + result.window + cure);

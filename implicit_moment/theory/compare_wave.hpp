@@ -65,6 +65,13 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
         return "field.theta = " + format(w.field.theta) + " damps by some " + format(damping) +
                ", which this theory of short steps does not have: set field.theta = 0.5, or lower "
                "time.dt";
+    // Of a leapfrog sin(omega dt/2) = omega' dt/2.
+    const double leap = grows ? 0 : std::norm(theory.omega) * w.dt * w.dt / 24;
+    if (w.leapfrog.chosen && !theory.of_scheme && leap > 0.3 * tolerance)
+        return "steps of omega dt = " + format(std::abs(theory.omega) * w.dt) +
+               " raise the frequency by some " + format(leap) +
+               " of it, which this theory of short steps does not have: lower time.dt to " +
+               format(w.dt * std::sqrt(0.3 * tolerance / leap));
     const std::string near_c = drifts_near_c(w)
                                    ? "; or raise field.smoothing_passes: particles near "
                                      "c feed light that the mesh slows down (numerical "
@@ -122,6 +129,9 @@ inline void compare_wave(const Case& w, const common::History& history, common::
     summary.hint(likely_cause(w, theory, grows, seen, tolerance));
     const double apart = times.size() > 1 ? times[1] - times[0] : 0;
     const bool rare = frequency * apart >= pi;
+    // In a run so long growth is seen, or it is over: it needs 3 e-foldings, and 3.5 more to its maximum.
+    const double enough = std::ceil(grows ? search.begin + 6.5 / growth : 20 / frequency);
+    const bool is_short = seen.reason.ends_with("raise time.end") && enough > w.end;
     const auto report = [&](const std::string& name, common::Measured value) {
         if (rare)
             summary.not_measured(
@@ -131,7 +141,9 @@ inline void compare_wave(const Case& w, const common::History& history, common::
         else if (seen.found)
             summary.result(name, value, "", 1, tolerance, where);
         else
-            summary.not_measured(name, seen.reason + (seen.over ? ": lower the seed" : ""));
+            summary.not_measured(name, seen.reason + (seen.over  ? ": lower the seed"
+                                                      : is_short ? " to " + format(enough)
+                                                                 : ""));
     };
     if (grows) report("growth_over_theory", {seen.growth() / growth, seen.growth_error() / growth});
     if (frequency > 0.1 * std::fabs(growth))  // a slower one fades before it swings
