@@ -345,11 +345,14 @@ inline std::vector<std::string> superluminal_warnings(const Case& w, const Scale
                  ? "with u = gamma v above c: temperatures and drifts are those of u"
                  : "faster than light, and the push is not relativistic");
     }
-    if (const double heat = relativistic_heat(w); heat > 0) warnings.push_back(hot_sheet(heat));
+    if (const std::string why = no_balance(w); !why.empty()) warnings.push_back(why);
     if (!w.is_uniform()) return warnings;
     const UniformCase& u = w.uniform;
     const Eigen::Vector3d E(u.E_x, u.E_y, u.E_z), B(u.B_x, u.B_y, u.B_z);
     const double fast = B.norm() > 0 ? E.cross(B).norm() / B.squaredNorm() : 0;
+    warn(warnings, w.is_relativistic() && !u.species.empty() && fast > 0.05 && fast < 1,
+         "the drift c E/B would be ", fast,
+         " c, above 0.05, and its theory has no Lorentz factor: lower uniform.E");
     warn(warnings, fast >= 1, "uniform.E across B is ", fast, " of B, and the drift E x B ",
          w.is_relativistic() ? "needs less than 1: particles run away"
                              : "would be that many times as fast as light",

@@ -38,20 +38,25 @@ inline HarrisSheet harris_sheet(const HarrisCase& parameters) {
     return sheet;
 }
 
-/// The largest T/mc^2 of a sheet of relativistic particles, where it is so large that a drifting Maxwellian of
-/// gamma v does not balance the field. out: 0 elsewhere
-inline double relativistic_heat(const Case& w) {
+/// The part of its current that a sheet of relativistic particles lacks: gamma v of a species is loaded with the drift V
+/// and the temperature T, and the mean of v is about V (1 + V^2 + 5 T/m)^(-1/2), [c].
+inline double lacking_current(const Case& w) {
     if (w.is_uniform() || !w.is_relativistic()) return 0;
-    const HarrisSheet sheet = harris_sheet(harris_of(w));
-    const double heat = std::pow(std::max(sheet.v_i, sheet.v_e) / c, 2);
-    return heat > 0.02 ? heat : 0;
+    const HarrisSheet s = harris_sheet(harris_of(w));
+    const auto lacks = [](double V, double v) {
+        return V * (1 - 1 / std::sqrt(1 + (V * V + 5 * v * v) / (c * c)));
+    };
+    return (lacks(s.u_i, s.v_i) - lacks(s.u_e, s.v_e)) / (s.u_i - s.u_e);
 }
-/// The same in words.
-inline std::string hot_sheet(double heat) {
-    return sentence("temperatures are up to ", heat,
-                    " of m c^2, above 0.02, where drifting Maxwellians of gamma v do not balance "
-                    "the field and the sheet is no exact equilibrium: set particles.relativistic = "
-                    "false");
+/// The same in words. in: least, of it. out: empty below that
+inline std::string no_balance(const Case& w, double least = 0.02) {
+    const double part = lacking_current(w);
+    if (part < least) return "";
+    return sentence("drift and heat of gamma v make v smaller, so that the current is about ",
+                    100 * part,
+                    " % too small to balance the field and the sheet is no exact equilibrium: set "
+                    "particles.relativistic = false, or raise ",
+                    w.setup, ".light_over_alfven");
 }
 
 /// All species of a run.

@@ -233,8 +233,8 @@ inline void compare_energy(const Case& w, const common::History& history,
                       damps && (w.wave == "langmuir" || w.wave == "cold")
                           ? drift.back() - history.column("energy_residual").back()
                           : 0);
-    const double heat = relativistic_heat(w);
-    summary.hint(heat > 0 && w.harris.perturbation == 0 ? hot_sheet(heat)
+    const std::string unbalanced = no_balance(w);
+    summary.hint(!unbalanced.empty() && w.harris.perturbation == 0 ? unbalanced
                  : damps && !(drift.back() > 0)
                      ? std::string("field.theta above 0.5 damps fast waves and noise: raise the "
                                    "number of particles, or set it to 0.5") +

@@ -72,28 +72,33 @@ inline void compare_equilibrium(const Case& w, const Plasma& plasma,
     double heated = 0;
     for (const Particles& s : plasma.species)
         heated = std::max(heated, gained("kinetic_" + s.name));
-    const double flux = history.column("flux").back(), tears = 2 * pi * w.harris.thickness,
-                 heat = relativistic_heat(w);
-    const std::string tearing =
-        heat > 0 ? hot_sheet(heat)
-        : flux > 0.1 * w.harris.thickness && grid.x.length > tears
-            ? sentence("the sheet tears by itself, for the box is longer than 2 pi lambda = ",
-                       tears, ", and has reconnected ", flux,
-                       " B0 d_i: shorten time.end or grid.length_x, or raise harris.particles")
-            : "";
-    const bool by_tearing = !tearing.empty() && (heat > 0 || -gained("magnetic") > 0.5 * heated);
-    summary.hint(by_tearing ? tearing
-                            : "few particles exchange heat: raise harris.particles; or "
-                              "refine the mesh, which heats what it does not resolve");
+    const double flux = history.column("flux").back(), tears = 2 * pi * w.harris.thickness;
+    const std::string unbalanced = no_balance(w),
+                      tearing = flux > 0.1 * w.harris.thickness && grid.x.length > tears
+                                    ? sentence(
+                                          "the sheet tears by itself, for the box is longer than "
+                                          "2 pi lambda = ",
+                                          tears, ", and has reconnected ", flux,
+                                          " B0 d_i: shorten time.end or grid.length_x, or raise "
+                                          "harris.particles")
+                                    : "";
+    const bool by_tearing = !tearing.empty() && -gained("magnetic") > 0.5 * heated;
+    summary.hint(!unbalanced.empty() ? unbalanced
+                 : by_tearing        ? tearing
+                                     : "few particles exchange heat: raise harris.particles; or "
+                                       "refine the mesh, which heats what it does not resolve");
     for (const Particles& s : plasma.species) {
         const auto kinetic = history.column("kinetic_" + s.name);
         summary.result("kinetic_over_initial_" + s.name, kinetic.back() / kinetic.front(), "", 1,
                        0.05, "equilibrium: neither heats nor cools");
     }
-    summary.hint(!tearing.empty() ? tearing
-                                  : "the mesh changes a sheet that it does not resolve, and the "
-                                    "more particles there are the more this stands out of their "
-                                    "noise: refine the mesh, or lower field.smoothing_passes");
+    const std::string lacks = no_balance(w, 0.003);
+    summary.hint(!unbalanced.empty() ? unbalanced
+                 : !tearing.empty()  ? tearing
+                 : !lacks.empty()    ? lacks
+                                     : "the mesh changes a sheet that it does not resolve, and the "
+                                       "more particles there are the more this stands out of their "
+                                       "noise: refine the mesh, or lower field.smoothing_passes");
     seen.report("n0 sech^2(z/lambda) + n_inf", "Harris 1962", summary);
 }
 

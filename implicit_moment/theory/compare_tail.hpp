@@ -14,6 +14,7 @@
 #include "implicit_moment/setup/load_plasma.hpp"
 #include "implicit_moment/theory/compare_equilibrium.hpp"
 #include "implicit_moment/theory/compare_reconnection.hpp"
+#include "implicit_moment/theory/images_of_mode.hpp"
 
 namespace implicit_moment {
 
@@ -79,9 +80,11 @@ inline void compare_tail_at_rest(const Case& w, const common::History& history,
                 middle += block(moments[0].rho), expected_middle += n, in_middle += in_block;
         }
     }
-    const double heat = relativistic_heat(w);
-    summary.hint(heat > 0 ? hot_sheet(heat)
-                 : !grid.x.mirrors
+    // Linear splines, not smoothed, reach behind no wall.
+    const bool ends_alike = has_linear_splines(w) && w.field.smoothing.passes == 0;
+    const std::string unbalanced = no_balance(w);
+    summary.hint(!unbalanced.empty() ? unbalanced
+                 : !grid.x.mirrors && !ends_alike
                      ? "no equilibrium ends at walls that conduct: set "
                        "grid.boundary_x = \"reflecting\""
                      : "noise of few particles moves the field, and so does a sheet that tears "
