@@ -34,6 +34,34 @@ nlohmann::json passing(const std::string& name, const std::string& arguments, in
     check_results(json, results);
     return json;
 }
+// Electrons and positrons in a square of 8, but for what the rest says.
+std::string pairs(const std::string& rest, const std::string& drift = "",
+                  const std::string& temperature = "") {
+    std::string words = " implicit_moment/cases/gem_explicit.toml " + rest;
+    const auto unless_said = [&](const std::string& key, const std::string& value) {
+        if (!holds(words, " " + key + "=")) words += " " + key + "=" + value;
+    };
+    for (const char* axis : {"x", "z"}) {
+        unless_said(std::string("grid.cells_") + axis, "32");
+        unless_said(std::string("grid.length_") + axis, "8");
+    }
+    unless_said("plasma.setup", "uniform"), unless_said("output.fields_interval", "0");
+    unless_said("time.dt", "0.1"), unless_said("uniform.particles_per_cell", "9");
+    for (const std::string one : {"species.e.", "species.p."}) {
+        words += " " + one + "charge=" + (one == "species.e." ? "-1" : "1");
+        if (!drift.empty()) words += " " + one + drift;
+        for (const char* axis : {"x", "y", "z"})
+            if (!temperature.empty())
+                words += " " + one + "temperature_" + axis + "=" + temperature;
+    }
+    return words;
+}
+nlohmann::json results(const std::string& name, const std::string& arguments) {
+    const std::string out = folder(name);
+    CAPTURE(arguments);
+    REQUIRE(run(arguments, out) == 0);
+    return summary(out)["results"];
+}
 double conserved(const nlohmann::json& json, const char* name) {
     return json["conservation"][name]["value"].get<double>();
 }
@@ -104,6 +132,121 @@ TEST_CASE("a small GEM challenge keeps its energy and its constraints" *
         CHECK(conserved(json, "largest_div_B") <= 1e-14);
         CHECK(std::fabs(column(out, "flux").front() - 0.2) <= 0.01);
     }
+}
+
+TEST_CASE("momentum along walls is judged, and kept by wide splines with smoothing" *
+          doctest::description("physics")) {
+    for (const auto& [walls, drift] :
+         {std::pair{"grid.boundary_z=wall", "drift_x=0.05"},
+          {"grid.boundary_z=periodic", "drift_x=0.05"},
+          {"grid.boundary_x=reflecting grid.boundary_z=periodic", "drift_z=0.05"}}) {
+        const std::string cold =
+            pairs(std::string(walls) + " species.p.mass=4 time.end=100", drift, "1e-5");
+        const auto braked = results("braked", cold)["momentum_change"];
+        CHECK(braked["value"].get<double>() > 0.1);
+        CHECK(braked["verdict"] == "FAIL");
+        CHECK(holds(braked["hint"].get<std::string>(),
+                    "Debye length is 0.01265 cells: set particles.order = 2 and "
+                    "field.smoothing_passes = 4"));
+        const auto kept = results("kept", cold + " particles.order=2 field.smoothing_passes=4");
+        CHECK(kept["momentum_change"]["value"].get<double>() <= 1e-4);
+    }
+    // What a field that crosses walls holds and what meets a wall is not kept.
+    for (const auto& [walls, drift] :
+         {std::pair{"grid.boundary_z=reflecting uniform.B_z=0.1", "drift_z=0.05"},
+          {"grid.boundary_z=reflecting uniform.B_z=0.1", "drift_y=0.05"},
+          {"grid.boundary_z=wall", "drift_z=0.05"}})
+        CHECK(!results("lost", pairs(std::string(walls) + " time.end=4", drift, "1e-5"))
+                   .contains("momentum_change"));
+}
+
+TEST_CASE("momentum across a field along walls is kept together with that of the field" *
+          doctest::description("physics")) {
+    const auto kept = results("field", pairs("grid.boundary_z=wall uniform.B_y=0.2 time.end=60 "
+                                             "particles.order=2 field.smoothing_passes=4",
+                                             "drift_x=0.1", "0.02"));
+    CHECK(kept["momentum_change"]["value"].get<double>() <= 0.01);  // particles lose 0.03
+}
+
+TEST_CASE("walls that mirror the plasma differ where splines or smoothing reach behind them" *
+          doctest::description("physics")) {
+    const auto history = [](const std::string& wall, const std::string& rest) {
+        const std::string out = folder("behind");
+        REQUIRE(run(pairs("grid.boundary_z=" + wall +
+                              " time.end=5 species.e.drift_y=0.05 species.p.drift_y=-0.05 " + rest,
+                          "", "1e-3"),
+                    out) == 0);
+        return read_all(out + "/history.dat");
+    };
+    CHECK(history("wall", "") == history("reflecting", ""));
+    for (const char* reach : {"particles.order=2", "field.smoothing_passes=1"})
+        CHECK(history("wall", reach) != history("reflecting", reach));
+}
+
+TEST_CASE("waves that have no E along walls have the frequency of theory beside them" *
+          doctest::description("physics")) {
+    const std::string rest =
+        " grid.length_x=4 grid.length_z=4 time.dt=0.05 time.end=30 uniform.particles_per_cell=16 "
+        "grid.boundary_z=wall theory.wave=transverse theory.near=2.1 output.history_steps=1";
+    for (const std::string seed :
+         {"uniform.mode_x=0 uniform.mode_z=1 theory.component=E_y species.e.wave_y=1e-4 "
+          "species.p.wave_y=-1e-4 species.e.phase_y=90 species.p.phase_y=90",
+          "theory.component=E_z species.e.wave_z=1e-4 species.p.wave_z=-1e-4"}) {
+        const auto seen = results("beside", pairs(rest + " " + seed));
+        CHECK(std::fabs(seen["omega_over_theory"]["value"].get<double>() - 1) <= 0.003);
+    }
+}
+
+TEST_CASE("a hint of explicit_em names the cause and its cure lets the run pass" *
+          doctest::description("physics")) {
+    struct Failure {
+        std::string run, result, hint, cured;
+    };
+    const std::string harris =
+        " implicit_moment/cases/gem_explicit.toml grid.cells_x=64 grid.cells_z=64 "
+        "grid.length_x=6.4 grid.length_z=6.4 time.dt=0.06 time.end=0.06 harris.mass_ratio=4 "
+        "harris.light_over_alfven=5 harris.particles=60000 harris.perturbation=0 "
+        "harris.background=0 output.fields_interval=0 output.history_steps=1";
+    const auto transverse = [](const std::string& dt) {
+        return pairs(
+            "grid.length_x=64 grid.cells_z=4 time.end=200 theory.wave=transverse "
+            "theory.component=E_y "
+            "theory.near=1 species.e.wave_y=1e-4 species.p.mass=1e5 output.history_steps=1 "
+            "grid.boundary_z=periodic time.dt=" +
+            dt);
+    };
+    for (const Failure& one :
+         {Failure{harris, "current_over_noise", "7.647 % too small",
+                  harris + " particles.relativistic=false"},
+          {transverse("1"), "omega_over_theory", "steps of omega dt = 1", transverse("0.45")}}) {
+        const auto seen = results("cause", one.run);
+        CHECK(seen[one.result]["verdict"] == "FAIL");
+        CHECK(holds(seen[one.result]["hint"].get<std::string>(), one.hint));
+        CHECK(seen["energy_drift"]["verdict"] == "PASS");
+        CHECK(results("cured", one.cured)[one.result]["verdict"] == "PASS");
+    }
+    // A test particle at rest swings to 1.8 c where the drift is 0.9 c: no push without gamma helps.
+    const auto fast = results(
+        "fast", pairs("uniform.B_y=1 uniform.E_x=0.9 time.end=60 species.e.density=1e-9 "
+                      "species.p.density=1e-9 grid.boundary_z=periodic"))["drift_over_E_cross_B"];
+    CHECK(fast["verdict"] == "NOT MEASURED");
+    CHECK(!holds(fast.dump(), "particles.relativistic"));
+}
+
+TEST_CASE("growth that is short says how long a run tells it or that it is over" *
+          doctest::description("physics")) {
+    const std::string turns =
+        " grid.length_x=6 grid.cells_z=4 grid.length_z=0.5 time.dt=0.05 uniform.B_x=0.5 "
+        "uniform.particles_per_cell=256 theory.component=B_y theory.wave=transverse "
+        "output.history_steps=1 particles.relativistic=false species.e.temperature_x=0.01 "
+        "species.e.temperature_y=0.05 species.e.temperature_z=0.05 species.e.wave_y=0.001 "
+        "species.p.mass=1836 grid.boundary_z=periodic time.end=";
+    const auto said = [&](const std::string& end) {
+        return results("turns", pairs(turns + end))["growth_over_theory"]["source"]
+            .get<std::string>();
+    };
+    CHECK(holds(said("60"), "raise time.end to 130"));
+    CHECK(holds(said("130"), "growth is over then: lower the seed"));
 }
 
 TEST_CASE("a sheet with a larger island reaches unit flux and keeps its profile" *

@@ -1160,6 +1160,19 @@ plasmas beam particles.relativistic=false species.beam.temperature_y=1.44
     species 'beam' has speeds of 1.2 c (drift, seed or thermal speed): lower them
 plasmas beam particles.relativistic=false species.beam.wave_y=1
     species 'beam' has speeds of 1 c (drift, seed or thermal speed): lower them
+plasmas electrons grid.cells_x=8 uniform.mode_x=4 species.electrons.wave_x=1e-4
+    species.electrons.wave_x seeds a wave of two cells with its zeros where the mesh would see it:
+    set species.electrons.phase_x = 90
+plasmas uniform grid.cells_x=8 uniform.mode_x=4 uniform.wave_E_y=1e-4 uniform.phase_E_y=90
+    set uniform.phase_E_y = 0
+plasmas longitudinal species.electrons.charge=-1 grid.boundary_z=wall
+    theory.wave = "longitudinal" has E along the walls across z, where conductors let none be: take
+    grid.boundary_z = "periodic", or a mode along z alone
+plasmas transverse species.electrons.charge=-1 grid.boundary_x=reflecting theory.component=E_y uniform.mode_z=1
+    theory.wave = "transverse" has E along the walls across x
+plasmas transverse species.electrons.charge=-1 grid.boundary_z=wall theory.component=E_y uniform.mode_z=1 uniform.mode_x=0 species.electrons.wave_y=1e-4
+    the seed of species 'electrons' is no wave between the walls across z, where it has no nodes:
+    set its phase_y = 90
 implicit_moment langmuir.toml grid.cells_x=8 uniform.mode_x=4
     theory.wave = "langmuir": no wave has its E along k, since the field of this mode is smoothed
 implicit_moment beam particles.relativistic=true field.rotation=mesh

@@ -511,6 +511,11 @@ plasmas electrons grid.boundary_z=wall uniform.mode_x=0 uniform.mode_z=1 species
     warning: the species together have a charge of -1 e n0
 plasmas electrons species.electrons.charge=0
     warning: no species has a charge, and no field acts on any: give one a charge
+plasmas uniform uniform.E_x=1e-3 uniform.B_y=1
+    warning: there is no species for fields to act on: add a [species.<name>]
+# The drift of a wave across k that runs along walls is no motion through them.
+explicit_em transverse grid.boundary_z=wall theory.component=E_z time.dt=0.02 theory.near=1 \
+    species.electrons.charge=-1 species.electrons.wave_z=1e-4 species.ions.mass=100 -> no warning
 explicit_em grid.cells_x=256 grid.cells_z=128
     warning: electrons: the Debye length is 0.1443 cells, below 0.2: where the plasma drifts the
     mesh may heat it, watch the energy
@@ -522,16 +527,24 @@ explicit_em time.dt=0.3 grid.cells_x=48 grid.cells_z=24
 explicit_em harris.light_over_alfven=10 harris.guide_field=10
     warning: electrons: Omega_c dt = 0.7537 is above 0.5, gyration is too slow by more than 2 %:
     lower time.dt to 0.0199
-    warning: temperatures are up to 0.02083 of m c^2, above 0.02, where drifting Maxwellians of
-    gamma v do not balance the field and the sheet is no exact equilibrium: set
-    particles.relativistic = false
+    warning: drift and heat of gamma v make v smaller, so that the current is about 2.768 % too
+    small to balance the field and the sheet is no exact equilibrium: set particles.relativistic =
+    false, or raise harris.light_over_alfven
 explicit_em harris.light_over_alfven=10 harris.guide_field=0 particles.relativistic=false time.dt=0.01
     no warning
 explicit_em relativistic_two_stream.toml field.smoothing_passes=4 -> no warning
 explicit_em relativistic_two_stream.toml
-    warning: species 'right' drifts with 0.8944 c, and the shortest waves of light on this mesh with
+    warning: species 'right' drifts along x with 0.8944 c, and the shortest waves of light on this mesh with
     0.6697 c: it may feed them (numerical Cherenkov radiation); set field.smoothing_passes = 4
-    warning: species 'left' drifts with 0.8944 c
+    warning: species 'left' drifts along x with 0.8944 c
+explicit_em uniform time.dt=0.1 grid.cells_x=64 grid.cells_z=32 species.e.charge=-1 species.p.charge=1 \
+    species.e.drift_x=0.05 species.p.drift_x=0.05 species.e.temperature_x=1e-3
+    warning: the Debye length is 0 cells, below 0.6, and the plasma drifts as a whole: the mesh may
+    brake it, watch the momentum, or set particles.order = 2 and field.smoothing_passes = 4
+explicit_em uniform time.dt=0.1 grid.cells_x=64 grid.cells_z=32 species.e.charge=-1 species.p.charge=1 \
+    species.e.drift_y=0.05 species.p.drift_y=0.05 -> no warning
+explicit_em e_cross_b.toml uniform.E_x=0.1
+    warning: the drift c E/B would be 0.2 c, above 0.05, and its theory has no Lorentz factor: lower
 explicit_em beam particles.relativistic=false species.beam.temperature_x=0.09 grid.cells_x=512
     warning: beam: about 7198 of 8.389e+06 particles, 0.08581 %, are loaded faster than light, and
     the push is not relativistic

@@ -182,6 +182,35 @@ inline void validate_sheet(const Case& w) {
            current_balance);
 }
 
+// A wave of two cells that has its zeros where the mesh has the field or the current of its seed is none.
+inline void refuse_seeds_at_zeros(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const bool shortest_x = 2 * std::labs(u.mode_x) == w.grid.x.cells,
+               shortest_z = 2 * std::labs(u.mode_z) == w.grid.z.cells;
+    if (!((shortest_x || u.mode_x == 0) && (shortest_z || u.mode_z == 0))) return;
+    const auto look = [&](const std::string& section, const std::string& field,
+                          const VectorKind& kind, const std::array<double, 3>& seed,
+                          const std::array<double, 3>& phase) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const int right =
+                (shortest_x && kind.place[a].half_x) != (shortest_z && kind.place[a].half_z) ? 90
+                                                                                             : 0;
+            const std::string name = field + "xyz"[a];
+            refuse(seed[a] != 0 && std::fabs(std::cos((phase[a] - right) * pi / 180)) < 0.01,
+                   section, ".wave_", name,
+                   " seeds a wave of two cells with its zeros where the mesh would see it: set ",
+                   section, ".phase_", name, " = ", right);
+        }
+    };
+    look("uniform", "E_", electric, {u.wave_E_x, u.wave_E_y, u.wave_E_z},
+         {u.phase_E_x, u.phase_E_y, u.phase_E_z});
+    look("uniform", "B_", magnetic, {u.wave_B_x, u.wave_B_y, u.wave_B_z},
+         {u.phase_B_x, u.phase_B_y, u.phase_B_z});
+    for (const SpeciesCase& s : u.species)
+        look("species." + s.name, "", current, {s.wave_x, s.wave_y, s.wave_z},
+             {s.phase_x, s.phase_y, s.phase_z});
+}
+
 inline void validate_uniform(const Case& w) {
     const UniformCase& u = w.uniform;
     const bool uniform_E = u.E_x != 0 || u.E_y != 0 || u.E_z != 0;
@@ -239,6 +268,7 @@ inline void validate_uniform(const Case& w) {
     refuse(u.species.empty() && !seeded,
            "an empty uniform plasma: add a [species.<name>] or seed a field with uniform.wave_E_y");
     refuse_wave(w);
+    refuse_seeds_at_zeros(w);
 }
 
 }  // namespace detail
@@ -286,7 +316,8 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
         const auto look = [&](const char* name, const common::Axis& axis, long mode, long other,
                               double wave, double phase) {
             const bool across = mode != 0 && other == 0,
-                       moves = !across || std::fabs(std::cos(phase * pi / 180)) > 0.01;
+                       moves = across ? std::fabs(std::cos(phase * pi / 180)) > 0.01
+                                      : mode != 0 || wave_of(w) == nullptr;
             warn(warnings, !axis.periodic && wave != 0 && moves, "the seed of species '", s.name,
                  "' moves particles through the walls across ", name,
                  " and is no wave between them: ",
@@ -320,7 +351,11 @@ inline std::vector<std::string> idleness_warnings(const Case& w, const Scales& s
          ": no step is taken");
     if (std::max(Omega_c, light) * w.end > 0.1) return warnings;
     const bool acts = omega_p > 0 || light > 0;
-    warn(warnings, !acts, "no species has a charge, and no field acts on any: give one a charge");
+    const bool none = scales.species.empty();
+    warn(warnings, !acts && !none,
+         "no species has a charge, and no field acts on any: give one a charge");
+    warn(warnings, !acts && none,
+         "there is no species for fields to act on: add a [species.<name>]");
     warn(warnings, acts && omega_p * w.end < 0.1, "omega_p time.end = ", omega_p * w.end,
          " and Omega_c time.end = ", Omega_c * w.end,
          " are below 0.1: fields have no time to act; raise time.end, which is in units of "

@@ -72,7 +72,8 @@ inline void describe_plasma(common::ParameterTable& table, Case& w) {
     table.real("grid.length_z", w.grid.z.length, "d_i", above(0), "length of the box along z");
     table.choice(
         "grid.boundary_x", w.boundary_x, {"periodic", "wall", "reflecting"},
-        "ends of x; a wall conducts and reflects; reflecting: and the plasma goes on up to it");
+        "ends of x; a wall conducts and reflects; reflecting: and the plasma goes on up to it, "
+        "which linear splines without smoothing (explicit_em) do not see");
     table.choice("grid.boundary_z", w.boundary_z, {"periodic", "wall", "reflecting"}, "ends of z");
 
     table.group("time");

@@ -565,9 +565,42 @@ const Wave* wave_of(const Case& w) {
     return wave == all.end() ? nullptr : wave;
 }
 
+namespace {
+
+// Beside walls a wave has no E along them: it runs along them with E across, or stands with its nodes on them.
+void refuse_beside_walls(const Case& w, const std::string& wave) {
+    const UniformCase& u = w.uniform;
+    const auto look = [&](const char* name, const common::Axis& axis, long mode, long other,
+                          double B_along) {
+        if (axis.periodic) return;
+        const bool alone = mode != 0 && other == 0, in_plane = !has_E_along_y(w),
+                   across = mode == 0 &&
+                            (w.component == std::string("E_") + name || w.component == "B_y") &&
+                            in_plane && wave != "longitudinal" && wave != "langmuir" &&
+                            B_along == 0;
+        refuse(!alone && !across, "theory.wave = \"", wave, "\" has E along the walls across ",
+               name, ", where conductors let none be: take grid.boundary_", name,
+               " = \"periodic\", or a mode along ", name, " alone");
+        for (const SpeciesCase& s : u.species) {
+            const bool seeds[]{s.wave_x != 0, s.wave_y != 0, s.wave_z != 0};
+            const double phases[]{s.phase_x, s.phase_y, s.phase_z};
+            for (std::size_t a = 0; a < 3 && alone && s.charge != 0; ++a)
+                refuse(seeds[a] && std::fabs(std::cos(phases[a] * pi / 180)) > 0.01,
+                       "the seed of species '", s.name, "' is no wave between the walls across ",
+                       name, ", where it has no nodes: set its phase_", std::string(1, "xyz"[a]),
+                       " = 90");
+        }
+    };
+    look("x", w.grid.x, u.mode_x, u.mode_z, std::hypot(u.B_y, u.B_z));
+    look("z", w.grid.z, u.mode_z, u.mode_x, std::hypot(u.B_x, u.B_y));
+}
+
+}  // namespace
+
 void refuse_wave(const Case& w) {
     const Wave* wave = wave_of(w);
     if (wave == nullptr) return;
+    refuse_beside_walls(w, wave->name);
     refuse(w.end < 10 * w.dt,
            "theory.wave needs at least 10 steps to measure: raise time.end above ", 10 * w.dt);
     refuse(w.uniform.mode_x == 0 && w.uniform.mode_z == 0,
@@ -584,6 +617,57 @@ void refuse_wave(const Case& w) {
     refuse((wave->name == "light" || wave->name == "transverse") && only_k, "theory.wave = \"",
            wave->name, "\" has its fields across the mode, and theory.component = \"", w.component,
            "\" is along it: choose another one");
+}
+
+Eigen::Vector3d kept_components(const Case& w) {
+    const UniformCase& u = w.uniform;
+    const bool free_x = w.grid.x.periodic, free_z = w.grid.z.periodic;
+    if ((!free_x && u.B_x != 0) || (!free_z && u.B_z != 0)) return {0, 0, 0};
+    return {double(free_x), 1, double(free_z)};
+}
+
+Eigen::Vector3d common_drift(const Case& w) {
+    // In units of n0: of the drifts together, and of all that moves.
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+    double all = 0, charge = 0, charges = 0;
+    for (const SpeciesCase& s : w.uniform.species) {
+        const Eigen::Vector3d each(s.drift_x, s.drift_y, s.drift_z);
+        const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
+        drift += s.density * s.mass * each;
+        all += s.density * s.mass * (each.norm() + std::sqrt(T / s.mass));
+        charge += s.density * s.charge, charges += s.density * std::fabs(s.charge);
+    }
+    drift = drift.cwiseProduct(kept_components(w));
+    const bool counts = drift.norm() > 0.3 * all && std::fabs(charge) <= 1e-9 * charges;
+    return counts ? drift : Eigen::Vector3d(0, 0, 0);
+}
+
+double debye_cells(const Case& w) {
+    double squared = HUGE_VAL;
+    for (const SpeciesCase& s : w.uniform.species) {
+        const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
+        if (s.charge != 0)
+            squared = std::min(squared, T / (4 * pi * n0 * s.density * s.charge * s.charge));
+    }
+    return std::sqrt(squared) / std::max(w.grid.x.spacing(), w.grid.z.spacing());
+}
+
+std::string mesh_brakes(const Case& w) {
+    const std::string brakes = "the mesh brakes the drift, for the Debye length is " +
+                               format(debye_cells(w)) + " cells: ",
+                      refine = "refine the mesh until it is 1";
+    if (w.leapfrog.chosen)
+        return brakes + (w.leapfrog.order == 1 || w.field.smoothing.passes < 4
+                             ? "set particles.order = 2 and field.smoothing_passes = 4"
+                             : refine);
+    return brakes +
+           (w.field.rotates_in_the_middle()
+                ? ""
+                : "take B in the middle of the step, field.B_level = \"middle\", or ") +
+           refine +
+           (drifts_near_c(w) ? "; and light that the mesh slows down takes from particles near c "
+                               "(numerical Cherenkov): raise field.smoothing_passes"
+                             : "");
 }
 
 bool drifts_near_c(const Case& w) {

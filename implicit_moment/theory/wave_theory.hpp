@@ -39,6 +39,20 @@ const Wave* wave_of(const Case& w);
 /// errors: InputError with the cure, also where its dispersion relation has no root.
 void refuse_wave(const Case& w);
 
+/// Which components of the momentum of a uniform plasma are kept, 1 or 0: none of those through a wall, and along walls
+/// all, for E_t = 0 and B_n = 0 on a conductor leave no stress E_n E_t + B_n B_t there; none where B crosses a wall.
+Eigen::Vector3d kept_components(const Case& w);
+
+/// Momentum per area of a uniform plasma that drifts as a whole, by kept_components() [m_i c n0].
+/// out: 0 where the drifts together are less than a third of all that moves, or charges do not cancel
+Eigen::Vector3d common_drift(const Case& w);
+
+/// The shortest Debye length of what has a charge, in cells.
+double debye_cells(const Case& w);
+
+/// Why the mesh brakes a uniform plasma that drifts as a whole, with the cure.
+std::string mesh_brakes(const Case& w);
+
 /// Whether a species drifts with more than 0.7 c.
 bool drifts_near_c(const Case& w);
 

@@ -53,7 +53,8 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
          " is above 1.62, where oscillations of a warm plasma may grow: lower time.dt to ",
          w.dt * 1.5 / omega_p_dt);
     // Of light along an axis, waves of two cells are the slowest.
-    const auto warn_of_cherenkov = [&](const SpeciesCase& of, double u, double cells) {
+    const auto warn_of_cherenkov = [&](const SpeciesCase& of, const char* name, double u,
+                                       double cells) {
         const double squared = of.drift_x * of.drift_x + of.drift_y * of.drift_y +
                                of.drift_z * of.drift_z,
                      v = std::fabs(u) /
@@ -61,15 +62,23 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
                      slowest = 2 * cells / (pi * w.dt) * std::asin(std::min(1.0, c * w.dt / cells));
         warn(
             warnings, v > slowest && of.charge != 0 && w.field.smoothing.passes < 4, "species '",
-            of.name, "' drifts with ", v / c,
+            of.name, "' drifts along ", name, " with ", v / c,
             " c, and the shortest waves of light on this mesh with ", slowest / c,
             " c: it may feed them (numerical Cherenkov radiation); set field.smoothing_passes = 4");
     };
     for (const SpeciesCase& of : w.uniform.species) {
         if (!w.is_uniform()) break;
-        warn_of_cherenkov(of, of.drift_x, w.grid.x.spacing());
-        warn_of_cherenkov(of, of.drift_z, w.grid.z.spacing());
+        warn_of_cherenkov(of, "x", of.drift_x, w.grid.x.spacing());
+        warn_of_cherenkov(of, "z", of.drift_z, w.grid.z.spacing());
     }
+    const Eigen::Vector3d drift = w.is_uniform() ? common_drift(w) : Eigen::Vector3d(0, 0, 0);
+    const bool drifts = std::hypot(drift[0], drift[2]) > 0, wide = w.leapfrog.order == 2,
+               smooth = w.field.smoothing.passes >= 4;
+    const double debye = drifts ? debye_cells(w) : HUGE_VAL, least = wide || smooth ? 0.2 : 0.6;
+    warn(warnings, debye < least && !(wide && smooth), "the Debye length is ", debye,
+         " cells, below ", least,
+         ", and the plasma drifts as a whole: the mesh may brake it, watch the momentum, or set "
+         "particles.order = 2 and field.smoothing_passes = 4");
     // In the outer half of the mesh a way per step is a whole number of these.
     const double digit = std::numeric_limits<ParticleReal>::epsilon() *
                          std::max(w.grid.x.length, w.grid.z.length) / 2;
@@ -79,7 +88,7 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
              ": thermal particles go ", way / digit,
              " times the last digit of their positions in a step, fewer than 50, and are slower or "
              "faster than their velocities: compile with REAL=double, or raise time.dt");
-        warn(warnings, s.debye_length > 0 && s.debye_length < 0.2 * cell, s.name,
+        warn(warnings, !drifts && s.debye_length > 0 && s.debye_length < 0.2 * cell, s.name,
              ": the Debye length is ", s.debye_length / cell,
              " cells, below 0.2: where the plasma drifts the mesh may heat it, watch the energy");
         warn(warnings, s.Omega_c_dt > 0.5, s.name, ": Omega_c dt = ", s.Omega_c_dt,
