@@ -113,6 +113,10 @@ struct StepLimits {
 ///   c dt/dx [3/(2 gamma (1 - 1/n^2)) + 1 - 1/gamma]^1/2 <= 1,  n >= 2 particles across a cell
 inline constexpr double fastest_consistent = 1.4142135623730951;
 
+/// And the steps of viscosity have to be so much shorter, with some room for particles that have moved:
+///   dt nu/dx^2 (4/3 + 1) 12/(1 - 1/n^2) <= 2 where nodes move in turn along both axes
+inline constexpr double most_viscous_consistent = 4;
+
 /// How the velocity of a particle follows the mesh; see transfer.hpp.
 struct Transfer {
     bool flip = true;        // nothing but the velocity increment of the mesh

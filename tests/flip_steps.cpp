@@ -496,6 +496,34 @@ TEST_CASE("a viscous shear flow decays by the law of Newton" * doctest::descript
     });
 }
 
+TEST_CASE("a viscous step with the consistent mass is short enough and not by much" *
+          doctest::description("physics")) {
+    for (const long n : {2L, 4L}) {
+        Case w = flip_case(6, 6, "periodic", "periodic");
+        w.mass = "consistent", w.per_cell_x = w.per_cell_z = n, w.viscosity = 1;
+        w.q_linear = w.q_quadratic = 0;
+        w.regions = {fluid("", 1, 1)};
+        w.regions[0].noise = 1e-6;
+        const auto grown = [&](double dt) {
+            w.dt = dt;
+            FlipRun r(w);
+            try {
+                r.steps(200);
+            } catch (const common::NumericalError&) {
+                return 1e300;
+            }
+            return r.nodes().vx.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / 1e-6;
+        };
+        FlipRun r(w);
+        r.deposit();
+        const double allowed = step_allowed(r.problem, r.scratch.mesh, 0);
+        CAPTURE(n);
+        CHECK(scales_of(completed(w)).dt == facts::about(allowed));
+        CHECK(grown(allowed) <= 2);
+        CHECK(grown(3 * allowed) >= 1e3);
+    }
+}
+
 TEST_CASE("viscosities are those of their formulas in a uniform compression or expansion") {
     for (const double a : {-0.7, 0.4}) {
         for (const long rows : {1L, 6L}) {

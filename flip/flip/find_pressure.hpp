@@ -147,7 +147,7 @@ inline double density_of(const Cells& c, long i, long n) {
 ///   dt = cfl min 1/(|v_x|/dx + |v_z|/dz + c sqrt(1/dx^2 + 1/dz^2)),  fastest_consistent c for c with
 ///   the consistent mass and the density of cells; where the fluid turns, rate_of_swirl() is added;
 /// after the first step without the sound of the gas when the pressure is implicit; with viscosity
-/// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)); at most sqrt(cfl dx/a), a of gravity and of the
+/// nu also dt <= 1/(4 nu (1/dx^2 + 1/dz^2)), over most_viscous_consistent with that mass; at most sqrt(cfl dx/a), a of gravity and of the
 /// centrifugal force, cfl/sqrt(trap), and 1.2 times the last step
 /// in:     find_pressure() has been called; last, the last step, 0 before the first
 /// out:    a fixed limits.dt where there is one
@@ -164,7 +164,8 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
     const double per_dx2 = per_dx * per_dx + per_dz * per_dz,
                  faster = problem.scheme.consistent_mass && !problem.scheme.particle_volumes
                               ? fastest_consistent
-                              : 1;
+                              : 1,
+                 damped = problem.scheme.consistent_mass ? most_viscous_consistent : 1;
     const Values vx_g = g.vx, vz_g = g.vz, M = c.M, compressibility = c.compressibility;
     std::vector<double> of_row(grid.z.cells, 0.0);
     common::for_each_row(
@@ -191,7 +192,7 @@ inline double step_allowed(const Problem& problem, const Mesh& mesh, double last
                 }
                 double rate = (vx * per_dx + vz * per_dz + sound + turns) / limits.cfl;
                 if (problem.viscosity > 0)
-                    rate = std::max(rate, 4 * problem.viscosity / rho * per_dx2);
+                    rate = std::max(rate, 4 * damped * problem.viscosity / rho * per_dx2);
                 most = std::max({most, rate, outward});
             }
             of_row[j] = most;

@@ -301,10 +301,11 @@ inline void refuse_steps(const Case& parameters, const Scales& s) {
     for (const RegionScales& r : s.regions)
         if (r.particles > 0) lightest = std::min(lightest, r.lightest);
     const double number = parameters.viscosity * parameters.dt / (lightest * h * h);
-    refuse(number > 0.5, "time.dt = ", parameters.dt,
-           ": flip.viscosity dt/(density dx^2) = ", number,
-           " is above 0.5, where explicit viscosity blows up: lower it below ",
-           0.5 * parameters.dt / number);
+    const double most = parameters.mass == "consistent" ? 0.07 : 0.5;
+    refuse(number > most, "time.dt = ", parameters.dt,
+           ": flip.viscosity dt/(density dx^2) = ", number, " is above ", most,
+           ", where explicit viscosity ", most < 0.5 ? "with flip.mass = \"consistent\" " : "",
+           "blows up: lower it below ", most * parameters.dt / number);
 }
 
 }  // namespace flip

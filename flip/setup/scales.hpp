@@ -87,8 +87,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
         s.regions.push_back({.name = r.name, .vacuum = r.is_vacuum()});
     const double per_dx = 1 / parameters.grid.x.spacing(),
                  per_dz = parameters.plane() ? 1 / parameters.grid.z.spacing() : 0;
-    const bool faster =
-        program == "flip" && parameters.mass == "consistent" && parameters.density == "cells";
+    const bool consistent = program == "flip" && parameters.mass == "consistent",
+               faster = consistent && parameters.density == "cells";
     const double both = (faster ? fastest_consistent : 1) * std::hypot(per_dx, per_dz);
     const double place =
         parameters.grid.cell_area() / double(parameters.per_cell_x * parameters.per_cell_z);
@@ -155,7 +155,8 @@ inline Scales scales_of(const Case& parameters, const std::string& program = "fl
     for (const RegionScales& r : s.regions)
         if (parameters.viscosity > 0 && r.particles > 0)
             s.dt = std::min(s.dt, 0.25 * r.lightest /
-                                      (parameters.viscosity * (per_dx * per_dx + per_dz * per_dz)));
+                                      (parameters.viscosity * (per_dx * per_dx + per_dz * per_dz) *
+                                       (consistent ? most_viscous_consistent : 1)));
     if (parameters.dt > 0) s.dt = parameters.dt;
     s.dt = std::min(s.dt, parameters.end);
     s.steps = s.dt > 0 ? std::max(1.0, std::ceil(parameters.end / s.dt * (1 - 1e-12))) : 0;
