@@ -53,9 +53,12 @@ inline SoundWave sound_wave_of(const Case& parameters, const std::string& progra
 }
 
 /// The part of its frequency that the mesh alone takes from the wave of a case.
+/// note: of a transfer that smooths in every step, without that: short steps would leave no wave
 inline double slowed_by_mesh(const Case& parameters, const std::string& program) {
-    const double short_dt = 1e-3 / sound_wave_of(parameters, program, 1).frequency;
-    return 1 - sound_wave_of(parameters, program, short_dt).phase / 1e-3;
+    Case kept = parameters;
+    if (kept.transfer != "apic") kept.transfer = "flip";
+    const double short_dt = 1e-3 / sound_wave_of(kept, program, 1).frequency;
+    return 1 - sound_wave_of(kept, program, short_dt).phase / 1e-3;
 }
 
 /// How many particles a sound wave takes across a border of cells: its displacement, amplitude/k, over
@@ -168,6 +171,15 @@ inline Spiral spiral_of_theory(const Case& parameters, const std::string& progra
     return s;
 }
 
+/// Below this part of the start, a wave that its steps damp is lost in what they leave beside it.
+inline constexpr double least_of_wave = 0.01;
+
+/// How many rows of a run there are before theory leaves less of the wave.
+inline std::size_t rows_of_wave(const Spiral& theory) {
+    const auto dead = [](double log_size) { return log_size < std::log(least_of_wave); };
+    return std::size_t(std::ranges::find_if(theory.log_size, dead) - theory.log_size.begin());
+}
+
 /// The rms of the velocity along x on the cells, about its mean.
 inline double rms_velocity(const Case& parameters, const CellFields& cells) {
     const std::vector<double> vx = mean_over_z(parameters.grid, cells.vx);
@@ -180,15 +192,14 @@ inline double rms_velocity(const Case& parameters, const CellFields& cells) {
 /// Frequency, and the change of the amplitude in a period, both from slopes as those of theory.
 inline void compare_wave(const FinishedRun& run) {
     const Case& parameters = run.parameters;
-    const auto times = run.history.column("time");
+    auto times = run.history.column("time");
     if (times.size() < 3)
         return run.summary.not_measured("frequency_over_ck", "the run has fewer than two steps");
     const double dt = times.back() / double(times.size() - 1);
     const SoundWave wave = sound_wave_of(parameters, run.program, dt);
-    const Spiral velocity = unwound(run.history.complex_column("mode")),
-                 pressure = unwound(run.history.complex_column("pressure")),
-                 theory = spiral_of_theory(parameters, run.program, times);
-    const double frequency = -common::slope(times, velocity.phase);
+    Spiral velocity = unwound(run.history.complex_column("mode")),
+           pressure = unwound(run.history.complex_column("pressure")),
+           theory = spiral_of_theory(parameters, run.program, times);
     const double period = 2 * pi / wave.frequency, steps = period / dt;
     const auto per_period = [&](const Spiral& mode) {
         return std::exp(common::slope(times, mode.log_size) * period);
@@ -196,7 +207,6 @@ inline void compare_wave(const FinishedRun& run) {
     const std::string scheme = sentence(
         parameters.implicit() ? "theta scheme" : "explicit step", " on this mesh",
         parameters.implicit() || wave.amplification <= 1 + 1e-12 ? "" : ", which makes sound grow");
-    run.info("frequency", frequency, "1/time", "of velocity");
     const RegionCase& r = region_with_flow(parameters, "wave");
     const bool flips = run.program == "flip", odd = flips && drowns_in_noise(parameters, r),
                random = flips && parameters.loading == "random" && parameters.density == "cells";
@@ -224,6 +234,20 @@ inline void compare_wave(const FinishedRun& run) {
     // The noise of particles at random places is in all modes alike, and a part of it in that of the wave.
     if ((odd && rest > size) || (random && rest > 3 * size))
         return run.not_measured("frequency_over_ck", even);
+    const std::size_t rows = rows_of_wave(theory);
+    const double seen = times[rows - 1];
+    if (rows < times.size() && (seen < period || rows < 8))
+        return run.not_measured(
+            "frequency_over_ck", "after ", seen / period, " periods and ", rows - 1,
+            " steps theory leaves less than ", least_of_wave, " of the wave: ",
+            parameters.implicit() && parameters.theta > 0.5
+                ? sentence("set time.dt = ", 0.3 / wave.frequency, " or flip.theta = 0.5")
+                : "take flip.transfer = \"flip\", or a longer wave");
+    times.resize(rows);
+    for (Spiral* s : {&velocity, &pressure, &theory})
+        s->phase.resize(rows), s->log_size.resize(rows);
+    const double frequency = -common::slope(times, velocity.phase);
+    run.info("frequency", frequency, "1/time", "of velocity");
     if (const double speed = std::fabs(r.amplitude) * wave_speed; r.noise > 0.1 * speed)
         run.hint("region.", r.name, ".noise = ", r.noise, " is not far below ", speed,
                  ", the velocity in the wave: lower it below a tenth of that, or take it out");
