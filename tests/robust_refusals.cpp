@@ -337,6 +337,9 @@ flip tube time.dt=0.02 flip.pressure=implicit region.gas.velocity_x=1
 flip box time.dt=0.001 flip.viscosity=1
     flip.viscosity dt/(density dx^2) = 1.024 is above 0.5, where explicit viscosity blows up: lower
     it below 0.0004883
+flip box time.dt=0.0001 flip.viscosity=1 flip.mass=consistent
+    flip.viscosity dt/(density dx^2) = 0.1024 is above 0.07, where explicit viscosity with
+    flip.mass = "consistent" blows up: lower it below 6.836e-05
 fluids tube gravity.z=-1 -> gravity.z = -1 needs grid.cells_z of at least 2
 )");
 }
@@ -477,6 +480,9 @@ fluids sod theory.compare=riemann around_x
     theory.compare = "riemann" needs ends in x, and they are periodic
 fluids sod theory.compare=riemann gravity.x=1
     theory.compare = "riemann" is for fluid without gravity or trap
+flip rotating_column.toml theory.mode=2
+    theory.compare = "inertial_wave" follows theory.mode = 2, and region.gas.velocity_x has mode 1:
+    make them the same
 fluids piston.toml time.end=1.6
     theory.compare = "piston": the other end of the mesh is felt behind the shock from t = 1.305 on:
     lower time.end below that

@@ -102,8 +102,11 @@ inline void compare_gravity_wave(const FinishedRun& run) {
     run.hint(
         "the wave has ", w.grid.x.cells / w.mode,
         " cells, and the fluids cannot slip within one, which costs most where their densities "
-        "are alike: refine the mesh, raise particles.per_cell_x and per_cell_z, and take ",
-        run.flip_with(),
+        "are alike: refine the mesh, ",
+        steepest > 0.06 ? sentence("lower the amplitude, for the steepness is ", steepest,
+                                   ", and above 0.06 that slows the wave, ")
+                        : "",
+        "raise particles.per_cell_x and per_cell_z, and take ", run.flip_with(),
         "flip.transfer = \"xpic\" where particles make more noise than the wave; viscosity damps "
         "it");
     run.summary.result(names[0], {seen.frequency() / of_steps, seen.frequency_error() / of_steps},

@@ -82,6 +82,22 @@ inline void validate_inertial_wave(const Case& parameters, const Refusal& refuse
     refuse(std::fabs(column(1e-6 * x.length, middle).v_theta) > 1e-3 * fastest,
            " needs a rotation about the axis, and region.", r.name,
            ".velocity_theta is not 0 there");
+    // Where a wave has its largest velocity across the axis, the parts of its modes along z.
+    const auto seeded = [&](long mode) {
+        double sum = 0;
+        for (long j = 0; j < z.cells; ++j) {
+            const double at = (double(j) + 0.5) / double(z.cells);
+            sum += column(0.48 * x.length, z.low + at * z.length).vx *
+                   std::cos(pi * double(mode) * at);
+        }
+        return std::fabs(sum);
+    };
+    long most = parameters.mode;
+    for (long mode = 1; 2 * mode <= z.cells; ++mode)
+        if (seeded(mode) > seeded(most)) most = mode;
+    refuse(seeded(parameters.mode) < 0.01 * seeded(most),
+           " follows theory.mode = ", parameters.mode, ", and region.", r.name,
+           ".velocity_x has mode ", most, ": make them the same");
     refuse(inertial_frequency_of(parameters) == 0.0,
            " has no wave: the angular momentum is the same everywhere");
 }

@@ -165,6 +165,13 @@ inline void compare_growth(const FinishedRun& run, double expected, double most,
     const Amplitudes z = Amplitudes(mode).first(count);
     if (std::ranges::all_of(z, [](const auto& one) { return std::norm(one) == 0; }))
         return run.not_measured(name, "there is no wave: give a region an amplitude, or a ripple");
+    if (expected * t.back() < 1)
+        return run.not_measured(
+            name, "theory has the wave grow by ", expected * t.back(), " e-foldings ",
+            count < mode.size()
+                ? sentence("before it is as large as ", most,
+                           ", fewer than 1: start with a smaller one")
+                : sentence("until time.end, fewer than 1: raise it to ", 4 / expected));
     const HyperbolicFit fit = fit_hyperbolic(t, z, expected);
     if (std::fabs(std::log(fit.rate / expected)) > 0.98 * std::log(widest))
         return run.not_measured(

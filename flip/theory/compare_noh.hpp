@@ -103,16 +103,23 @@ inline void compare_noh(const FinishedRun& run) {
     const double plateau = area > 0 ? sum / area : 0;
     const double radius = run.history.column("shock_radius").back(),
                  R_then = theory::noh_shock_radius(noh, run.history.column("time").back());
-    run.hint("the shock has come ", R / run.parameters.grid.x.spacing(),
+    // The plateau is what lies between 0.3 and 0.8 of the radius, three cells at least.
+    const double come = R / run.parameters.grid.x.spacing(), needs = 6;
+    if (come < needs)
+        for (const char* name : {"plateau_density_over_theory", "shock_radius_over_theory"})
+            run.not_measured(name, "the shock is ", come, " cells from the middle, and ", needs,
+                             " are needed: raise time.end, or refine the mesh");
+    run.hint("the shock has come ", come,
              " cells from the middle, where heat piles up and keeps mass away: refine the mesh, or "
              "raise time.end");
-    run.result("plateau_density_over_theory", plateau / behind.density, "", 1,
-               sentence(source, ": ", behind.density));
-    if (R_then > 0 && !(radius > 0))
+    if (come >= needs)
+        run.result("plateau_density_over_theory", plateau / behind.density, "", 1,
+                   sentence(source, ": ", behind.density));
+    if (come >= needs && !(radius > 0))
         run.summary.not_measured(
             "shock_radius_over_theory",
             "the density does not reach its level: raise time.end, or refine the mesh");
-    else if (R_then > 0)
+    else if (come >= needs)
         run.result("shock_radius_over_theory", radius / R_then, "", 1,
                    sentence(source, ": ", R_then));
     run.info("middle_density_over_theory", profile.rho[0] / behind.density, "",
