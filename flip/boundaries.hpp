@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "common/run/sentence.hpp"
@@ -48,6 +49,13 @@ inline bool gathers(const Problem& problem) {
                0;
 }
 
+/// Whether the density of cells is that of a liquid in implicit steps, whose pressure is then noise.
+inline bool boils(const Problem& problem) {
+    return problem.scheme.implicit && !problem.scheme.particle_volumes &&
+           std::ranges::any_of(problem.materials,
+                               [](const Material& a) { return a.p_infinity > 0; });
+}
+
 /// Removes every particle that has left through an open or an inflow boundary.
 /// in:     time, for the message
 /// in/out: particles, already wrapped; first_of_row is void afterwards
@@ -62,8 +70,14 @@ void remove_outflow(const Problem& problem, double time, Particles& particles, c
         const BoundaryKind kind = problem.boundaries.side[side].kind;
         if ((kind != BoundaryKind::open && kind != BoundaryKind::inflow) || !std::isfinite(x + z))
             common::fail(
-                "a particle has gone through the wall to x = ", x, ", z = ", z, " at t = ", time,
-                ": reduce time.cfl, or time.dt where it is set; where that does not help, ",
+                kind == BoundaryKind::periodic
+                    ? "a particle has gone farther than the mesh is long, to x = "
+                    : "a particle has gone through the wall to x = ",
+                x, ", z = ", z, " at t = ", time, ": ",
+                boils(problem) ? "cells count the particles of a liquid, and implicit steps make "
+                                 "flow of that: set flip.density = \"particles\"; else "
+                               : "",
+                "reduce time.cfl, or time.dt where it is set; where that does not help, ",
                 "particles make more noise than the flow: raise particles.per_cell_x",
                 gathers(problem) ? ", or take flip.transfer = \"xpic\", with which fewer gather "
                                    "within cells and fall"

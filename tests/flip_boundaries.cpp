@@ -168,6 +168,22 @@ TEST_CASE("what is beyond a wall ends the run with where and when") {
             CHECK(said.find("time.cfl") != std::string::npos);
         }
     }
+    // Around a periodic direction there is no wall, and of a liquid that cells count there is a cure.
+    for (const char* density : {"cells", "particles"}) {
+        Case w = flip_case(4, 4, "periodic", "slip");
+        w.pressure = "implicit", w.density = density;
+        w.materials = {{"water", 7, 10}};
+        FlipRun r = alone(w, 0.4, 0.6);
+        r.particles().x_p[0] = 2.125;
+        const std::string said = message_of([&] {
+            apply_particle_boundaries(r.problem, 1.5, 0.25, r.particles(), r.state.budget);
+        });
+        CAPTURE(said);
+        CHECK(said.find("farther than the mesh is long, to x = 2.125") != std::string::npos);
+        CHECK(said.find("wall") == std::string::npos);
+        CHECK((said.find("set flip.density = \"particles\"") != std::string::npos) ==
+              (w.density == "cells"));
+    }
     // Nor is a position that is no number on the mesh, or out through an open end.
     for (const char* kind : {"periodic", "slip", "open"}) {
         FlipRun r = alone(flip_case(4, 4, kind, kind), 0.4, 0.6);
