@@ -452,6 +452,51 @@ TEST_CASE("a wave in steps that grow is compared with each of them") {
     CHECK(run.value("amplitude_per_period") < 0.9);
 }
 
+TEST_CASE("a wave that dies is judged while it lives and not where it dies at once") {
+    const auto run = [](const std::string& keys, double dt) {
+        const std::string text = compare("wave") + "grid.cells_x = 32\ntime.end = 40\n" + keys +
+                                 "[region.gas]\nflow = \"wave\"\namplitude = 0.01\n";
+        // What is left behind has a thousandth of the start, and stays.
+        return recorded(text, "flip", int(40 / dt), [&](const Case& w, double t, Fluid& f) {
+            const SoundWave s = sound_wave_of(w, "flip", dt);
+            const double size = 0.01 * std::pow(s.amplification, t / dt);
+            visit_cells(w.grid, [&](long n, double x, double) {
+                f.cells.rho[n] = 1;
+                f.cells.vx[n] =
+                    size * std::cos(2 * pi * x - s.phase * t / dt) + 1e-5 * std::cos(2 * pi * x);
+                f.cells.p[n] = 1 + 1.4 * f.cells.vx[n];
+            });
+        });
+    };
+    facts::check_results(run("flip.transfer = \"pic\"\n", 0.01).summary, 2);
+    const auto at_once = run("flip.pressure = \"implicit\"\n", 1).summary["results"];
+    CHECK(at_once["frequency_over_ck"]["verdict"] == "NOT MEASURED");
+    CHECK(at_once["frequency_over_ck"]["source"].get<std::string>().find("set time.dt = ") !=
+          std::string::npos);
+}
+
+TEST_CASE("a liquid that cools beyond what its pressure gives has no kinetic energy of its own") {
+    const auto run = [](const std::string& density, double heat) {
+        const std::string text =
+            "grid.cells_x = 10\nmaterial.water.p_infinity = 10\n"
+            "flip.density = \"" +
+            density + "\"\n[region.water]\n";
+        return recorded(text, "flip", 2,
+                        [&](const Case&, double t, Fluid& f) {
+                            f.cells.rho.setOnes(), f.cells.p.setOnes();
+                            f.totals.kinetic = 0.1 + t, f.totals.internal = 100 + heat * t;
+                        })
+            .summary["results"];
+    };
+    // p^2/(2 gamma p_infinity) = 1/28 per volume, of a mesh of 1 x 0.1, is what it may give.
+    CHECK(run("cells", 0.5)["kinetic_from_heat"]["verdict"] == "PASS");
+    CHECK(run("cells", -0.003)["kinetic_from_heat"]["value"] == 0);
+    const auto cooled = run("cells", -0.5)["kinetic_from_heat"];
+    CHECK(cooled["verdict"] == "FAIL");
+    CHECK(cooled.value("hint", "").ends_with("set flip.density = \"particles\""));
+    CHECK(!run("particles", -0.5).contains("kinetic_from_heat"));
+}
+
 TEST_CASE("the growth of an interface is found from a start in motion and from one in shape") {
     const std::string text = compare("rayleigh_taylor") + channel +
                              "grid.cells_x = 32\ngrid.cells_z = 64\ngrid.length_z = 2\n"
@@ -537,6 +582,14 @@ TEST_CASE("what cannot be measured is said with its reason and what fails fails"
     CHECK(verdict(recorded(shear, "flip", 3, still), "growth_over_theory")
               .starts_with("NOT MEASURED: only 4 rows "));
     std::string longer = shear;
+    const auto early = recorded(shear, "flip", 20, [](const Case& w, double t, Fluid& f) {
+        f.cells.rho.setOnes();
+        visit_cells(w.grid, [&](long n, double x, double) {
+            f.cells.vz[n] = 1e-3 * std::cosh(2.7 * shear_growth_of(w) * t) * std::cos(2 * pi * x);
+        });
+    });
+    CHECK(verdict(early, "growth_over_theory").find("e-foldings until time.end, fewer than 1: ") !=
+          std::string::npos);
     longer.replace(longer.find("end = 0.1"), 9, "end = 10");
     const auto stays = recorded(longer, "flip", 20, [](const Case& w, double, Fluid& f) {
         f.cells.rho.setOnes();
@@ -605,6 +658,19 @@ TEST_CASE("what cannot be measured is said with its reason and what fails fails"
     CHECK(
         verdict(short_of_wall, "density_behind_shock").starts_with("NOT MEASURED: the shock is "));
     CHECK(!short_of_wall.summary["results"].contains("shock_speed"));
+    const auto falls = recorded(compare("noh") + walls +
+                                    "grid.cells_x = 20\ngrid.cells_z = 20\ntime.end = 0.1\n"
+                                    "[region.gas]\nflow = \"radial\"\nspeed = 1\npressure = 0\n",
+                                "flip", 3, still);
+    for (const char* name : {"plateau_density_over_theory", "shock_radius_over_theory"})
+        CHECK(verdict(falls, name).starts_with("NOT MEASURED: the shock is 0.4 cells"));
+    const auto bangs = recorded(compare("sedov") + walls +
+                                    "grid.cells_x = 20\ngrid.cells_z = 20\ntime.end = 0.1\n"
+                                    "[region.cold]\npressure = 1e-6\n[region.hot]\n"
+                                    "shape = \"disk\"\nradius = 0.1\nenergy = 0.25\n"
+                                    "pressure = 1e-6\n",
+                                "flip", 3, still);
+    CHECK(verdict(bangs, "shock_radius").starts_with("NOT MEASURED: the shock has come "));
 }
 
 TEST_CASE("the rate of a wave whose growth changes has an error as large as that") {

@@ -100,6 +100,7 @@ class Recorder {
         if (history.rows() > 1) judge_inflows(parameters_, state.time, cells, summary);
         if (history.rows() > 1) judge_energy(history, summary);
         if (history.rows() > 1) judge_volume(history, summary);
+        if (history.rows() > 1) judge_heat(history, summary);
         std::vector<std::string> errors{"mass_error", "momentum_x_error", "energy_error"};
         if (parameters_.moves_along_z()) errors.insert(errors.begin() + 2, "momentum_z_error");
         if (parameters_.swirls()) errors.insert(errors.end() - 1, "angular_momentum_error");
@@ -160,6 +161,7 @@ class Recorder {
                 relative(energy - budget.energy - gross, gross, budget.energy));
         row.add("largest_speed", "velocity", most.speed);
         if (judges_volume()) row.add("overfull", "1", cells.overfull);
+        if (judges_heat()) row.add("compressed", "energy" + per_length, compressed(cells));
         row.add("largest_mach", "1", most.mach);
         row.add("iterations", "1", double(state.report.iterations));
         row.add("divergence", "speed/dx", state.report.divergence);
@@ -211,6 +213,43 @@ class Recorder {
                                "", 0.05,
                                "part of all volume that liquid has beyond its cells, largest, over "
                                "that of the start");
+    }
+
+    // Of liquids alone whose density is that of the cells.
+    bool judges_heat() const {
+        return program_ == "flip" && parameters_.density == "cells" &&
+               std::ranges::all_of(parameters_.materials,
+                                   [](const Material& m) { return m.p_infinity > 0; });
+    }
+
+    // What liquid can give by expanding to p = 0, or somewhat more: sum of V p^2/(2 gamma p_infinity).
+    double compressed(const CellFields& cells) const {
+        double softest = std::numeric_limits<double>::infinity(), sum = 0;
+        for (const Material& m : parameters_.materials)
+            softest = std::min(softest, stiffness(m, 0));
+        const Grid& grid = parameters_.grid;
+        visit_cells(grid, [&](long n, double, double) {
+            sum += cell_volume(grid, column_of(grid, n)) * cells.p[n] * cells.p[n];
+        });
+        return sum / (2 * softest);
+    }
+
+    // Energy is kept also where noise moves a liquid, for it cools: below what it has at p = 0, which
+    // no flow of it can do.
+    void judge_heat(const common::History& history, common::Summary& summary) const {
+        const std::vector<double> mass = history.column("mass");
+        const bool closed = std::fabs(mass.back() - mass.front()) <= 1e-9 * mass.front();
+        if (!judges_heat() || !closed) return;
+        const double least = history.first("internal") - history.first("compressed");
+        double taken = 0, kinetic = 1e-11 * history.first("internal");
+        for (const double now : history.column("internal")) taken = std::max(taken, least - now);
+        for (const double now : history.column("kinetic")) kinetic = std::max(kinetic, now);
+        summary.hint(
+            "cells miscount the particles of a liquid, and that is pressure which moves it: set "
+            "flip.density = \"particles\"");
+        summary.result_at_most("kinetic_from_heat", taken / kinetic, "", 0.1,
+                               "what the liquid has cooled by beyond p = 0, largest, over the "
+                               "largest kinetic energy");
     }
 
     // An energy that is many times what the start and the work done account for is no result.
