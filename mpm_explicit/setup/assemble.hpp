@@ -35,7 +35,7 @@ namespace detail {
 inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, const Problem& w,
                           Scheme::Kind shape, const Material& material, Particles& particles) {
     const Mesh mesh = w.mesh();
-    for (FilledPlace at : fill(plan.outline, mesh, w.per_side, shape == Scheme::gimp)) {
+    for (FilledPlace at : fill(plan.outline, mesh, w.per_side, shape != Scheme::linear)) {
         // A grain that straddles the ends of a periodic mesh stays in one piece.
         if (mesh.periodic_x)
             at.x += mesh.length_x() * std::round((plan.outline.x - at.x) / mesh.length_x());

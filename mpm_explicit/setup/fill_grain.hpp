@@ -143,8 +143,9 @@ class Pieces {
 /// the centroid of that part. Squares are h / per_side wide. A part below a quarter of a square
 /// goes to its neighbors in the cell.
 /// in:     per_side, particles per cell and direction; tiled, whether the lattice begins at the corner of an
-///         upright box that holds whole squares, not at that of the mesh: gimp averages over whole squares, and
-///         with all of them whole an even stress is in equilibrium wherever the box is
+///         upright box that holds whole squares, not at that of the mesh: smooth shapes take every particle for
+///         a whole square, and where all of them are, an even stress is in equilibrium wherever the box is.
+///         Linear ones ask for full cells instead
 /// out:    places and volumes, cell by cell, row of cells by row of cells
 /// exact:  sum of volumes and center of mass are those of the outline, to round-off; a disk's moment
 ///         of inertia as well
