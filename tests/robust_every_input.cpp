@@ -170,7 +170,7 @@ ITEM = 2 -> unknown parameter 'ITEM'
                        {"control character", grain + "material = \"a\\u001Bb\"\n", "",
                         "'grain.a.material' holds a control character; write plain text"},
                        {"long text", grain + "vertices = \"" + longest + "\"\n", "",
-                        "'grain.a.vertices' has 901 letters; write at most 900"},
+                        "'grain.a.vertices' has 901 letters; write at most 900 (polygon: "},
                        {"long override", grain, "grain.a.vertices='" + longest + "'",
                         "has 901 letters; write at most 900"},
                        {"open quotes", grain, "grain.a.material=a\\'b",

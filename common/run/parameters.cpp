@@ -312,7 +312,7 @@ void ParameterTable::set(const Setting& setting) {
             refuse(" = " + quoted(*text) + " is not one of " + list);
         if (text->size() > longest_text)
             refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
-                   std::to_string(longest_text));
+                   std::to_string(longest_text) + " (" + entry->meaning + ")");
         if (formula == nullptr)
             **std::get_if<std::string*>(&entry->target) = *text;
         else if (text->empty())

@@ -154,7 +154,8 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
     table.real(at + "height", g.height, "length", above(0), "of a box");
     table.real(at + "angle", g.angle, "degree", anything(), "turns a box or a regular polygon");
     table.whole(at + "sides", g.sides, "", between(3, 64), "of a regular polygon");
-    table.text(at + "vertices", g.vertices, "polygon: \"x y, x y, x y ...\"; empty: a regular one");
+    table.text(at + "vertices", g.vertices,
+               "polygon: \"x y, x y, x y ...\"; empty: a regular one; many: a pack of a file");
     table.text(at + "material", g.material, "name of its material");
     table.real(at + "velocity_x", g.velocity_x, "velocity", anything(), "at start; rigid: always");
     table.real(at + "velocity_y", g.velocity_y, "velocity", anything(), "at start; rigid: always");
@@ -184,7 +185,8 @@ inline void describe_pack(common::ParameterTable& table, const std::string& pref
     table.choice(at + "kind", p.kind, {"hexagonal", "random", "loose", "file"},
                  "rows; random sizes, each at rest on others (polygons, in such disks); scattered "
                  "without touching; a file");
-    table.text(at + "file", p.file, "file: of grains, one per line");
+    table.text(at + "file", p.file,
+               "file: of lines disk NAME X Y RADIUS, polygon NAME X1 Y1 X2 Y2 ...");
     table.real(at + "x", p.x, "length", anything(), "hexagonal: first center; else left of region");
     table.real(at + "y", p.y, "length", anything(), "hexagonal: first center; else its floor");
     table.real(at + "width", p.width, "length", above(0), "of the region");
