@@ -930,7 +930,7 @@ grains disks theory.compare=rebound time.end=1 grain.left.velocity_y=0.1
 grains disks theory.compare=rebound time.end=1 material.soft.E=1e3 grain.left.material=soft
 grains mesh left theory.compare=rebound
 grains disks theory.compare=rebound grain.left.shape=box
-    theory.compare = "rebound" needs two equal disks that meet head on
+    theory.compare = "rebound" needs two equal disks of one material that meet head on
 grains disks theory.compare=rebound time.end=0.4
     theory.compare = "rebound": the disks meet at t = 0.5, and the run ends at 0.4: raise time.end
 mpm_explicit block_at_rest.toml time.end=1e-5 output.history_steps=1

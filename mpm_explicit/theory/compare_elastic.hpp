@@ -80,11 +80,11 @@ inline void report_contact(const FinishedRun& run, double b, common::Summary& su
 /// out:   t'; not a number where it never comes so far
 inline double time_of_way(double t, double c) { return c > 0 ? -std::log1p(-c * t) / c : t; }
 
-/// Needs two equal disks on one line, and a run that lasts until they meet.
+/// Needs two equal disks of one material on one line, and a run that lasts until they meet.
 inline void need_equal_disks(const PlannedCase& planned) {
     const std::vector<PlannedGrain>& plans = planned.plans;
     const auto is_disk = [](auto& plan) { return plan.outline.kind == OutlineKind::disk; };
-    const std::string sentence = " needs two equal disks that meet head on";
+    const std::string sentence = " needs two equal disks of one material that meet head on";
     planned.refuse(planned.free_grains() != 2 || planned.rigid_grains() != 0 ||
                        !std::all_of(plans.begin(), plans.end(), is_disk),
                    sentence);
