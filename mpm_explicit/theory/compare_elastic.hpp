@@ -50,10 +50,16 @@ inline void compare_energy(const FinishedRun& run, double tolerance, common::Sum
     // In the frame of the center of mass.
     const double own = energy.front() - energy_of_drift(run.history, run.all);
     const double change = (energy.back() - worked - energy.front()) / own;
-    const bool is_pic = run.parameters.flip < 1 || run.parameters.transfer == "pic";
+    const std::string& transfer = run.parameters.transfer;
+    const bool is_pic = run.parameters.flip < 1 || transfer == "pic",
+               is_affine = transfer == "apic" || transfer == "spin";
+    const double passed = run.history.column("pic").back() / own;
     summary.hint(is_pic && change < 0
                      ? "PIC takes kinetic energy in each step, more in shorter ones: take "
                        "method.flip = 1 and, in mpm_explicit, method.transfer = \"flip\""
+                 : is_affine && change < 0 && passed < 0.5 * change
+                     ? "method.transfer = \"" + transfer + "\" takes " + format(-passed) +
+                           " of it, the column pic: take method.transfer = \"flip\""
                      : energy_hint(run));
     summary.result("energy_change", change, "1", 0, tolerance,
                    "besides the work of loads and of load.damping; exact: none");
