@@ -408,11 +408,15 @@ inline void compare_hertz(const FinishedRun& run, common::Summary& summary) {
         "before the last fifth of the run, and raise load.damping");
     summary.result_at_most("loads_differ", load.spread / load.mean, "1", 0.01,
                            "of both plates, over their mean: equal at rest");
+    const bool implicit = run.planned.scheme.implicit;
     summary.hint(
-        "the contact is " + format(b / h) +
-        " cells wide at each side, and the nodes see it coarsely: refine the mesh until it "
-        "has four or more, and take method.shape = \"gimp\" where it is another one, since noise "
-        "of cell crossing softens; in mpm_implicit method.theta = 0.6 damps it");
+        "the contact is " + format(b / h) + " cells wide at each side" +
+        (b < 4 * h ? ", and the nodes see it coarsely: refine the mesh until it has four or more"
+                   : ": refine the mesh") +
+        (run.parameters.shape == "gimp"
+             ? ""
+             : "; take method.shape = \"gimp\", since noise of cell crossing softens") +
+        (implicit && run.planned.scheme.theta < 0.6 ? "; method.theta = 0.6 damps noise" : ""));
     summary.result("approach", (low - high) / contact_approach(disk, load.mean), "1", 1,
                    run.parameters.tolerance,
                    "over 2 P (1 - nu^2) / (pi E) (2 ln(4 R/b) - 1), Johnson's eq. 5.57, at both "
