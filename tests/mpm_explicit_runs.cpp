@@ -677,3 +677,43 @@ TEST_CASE("a front that the end of the mesh has stopped is not measured" *
                       "pack.g.height=40 pack.g.count=16 time.end=12");
     CHECK(r.summary["results"]["runout"]["verdict"] == "NOT MEASURED");
 }
+
+TEST_CASE("a hint names the transfer, the mesh or the time that is to blame and no other" *
+          doctest::description("physics")) {
+    const auto hint_of = [](const Run& r, const char* name) {
+        const auto& result = r.summary["results"][name];
+        REQUIRE(result["verdict"] == "FAIL");
+        return result["hint"].get<std::string>();
+    };
+    const auto has = [](const std::string& hint, const char* words) {
+        return hint.find(words) != std::string::npos;
+    };
+    for (const char* transfer : {"apic", "spin"}) {
+        CAPTURE(transfer);
+        const std::string hint =
+            hint_of(run("transfer", "rebound",
+                        std::string("method.shape=gimp method.transfer=") + transfer),
+                    "energy_change");
+        CHECK(has(hint, "the column pic: take method.transfer = \"flip\""));
+        CHECK_FALSE(has(hint, "cell crossing"));
+    }
+    check_results(run("transfer", "rebound", "method.shape=gimp method.transfer=flip"), 5);
+    // After several periods the mesh has shifted the phase, whatever amplitude and step.
+    const std::string wave =
+                          "material.default.E=1e4 material.default.nu=0.4 grain.body.mode=2 "
+                          "grain.body.amplitude=0.01 theory.tolerance=0.05 ",
+                      late = hint_of(run("late", "standing_wave", wave + "time.end=2"),
+                                     "velocity_error");
+    CHECK(has(late, "a phase that grows with time: refine it, or lower time.end"));
+    CHECK_FALSE(has(late, "amplitude"));
+    CHECK_FALSE(has(late, "time.alpha"));
+    for (const char* cure : {"time.end=0.25", "time.end=2 grid.cells_x=96 grid.cells_y=24"})
+        CHECK(run("late", "standing_wave", wave + cure).value("velocity_error") <= 0.05);
+    // Pressed three times as far as the case: five cells, and still not enough.
+    const std::string wide =
+        hint_of(run("wide", "hertz",
+                    "grid.cells_x=40 grid.cells_y=36 grain.top.velocity_y=-0.06 time.alpha=0.5"),
+                "approach");
+    CHECK(has(wide, "cells wide at each side: refine the mesh"));
+    CHECK_FALSE(has(wide, "four or more"));
+}
