@@ -227,12 +227,15 @@ class NodeSolver {
     }
 
     [[noreturn]] void fail(const char* what, const CgResult& cg, const ThetaScheme& scheme) const {
+        const bool ran_out = cg.iterations >= scheme.max_iterations;
         throw common::NumericalError(
             std::string("the velocities of ") + what + " are not found in " +
             std::to_string(cg.iterations) + " iterations: residual " + common::format(cg.residual) +
-            ", asked for " + common::format(scheme.tolerance) +
-            "; raise solver.max_iterations, reduce time.alpha" +
-            (scheme.consistent() ? ", or take method.mass = \"lumped\"" : ""));
+            ", asked for " + common::format(scheme.tolerance) + "; " +
+            (ran_out ? "raise solver.max_iterations, reduce time.alpha" : "round-off ended them") +
+            (scheme.consistent() ? "; where the mass matrix is nearly singular, as in sharp "
+                                   "corners, raise grid.particles_per_side"
+                                 : ""));
     }
 
     GrainFactors factors_;

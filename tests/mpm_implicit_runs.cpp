@@ -728,3 +728,43 @@ TEST_CASE("what walls stop is part of the work of a plate" * doctest::descriptio
     CHECK(std::fabs(r.column("pic").back()) >= 1e-3);
     CHECK(r.summary["results"]["energy_less_work"]["verdict"] == "PASS");
 }
+
+TEST_CASE("what a sharp corner does to the solution of a step is told with what ends it" *
+          doctest::description("physics")) {
+    // Five degrees: with two particles along a cell they are fewer there than nodes.
+    const std::string sliver = (std::filesystem::temp_directory_path() / "sliver.toml").string();
+    std::ofstream(sliver) << "grid = {cells_x = 50, cells_y = 50, length_x = 1.4}\n"
+                             "material.default = {E = 1e6, nu = 0.3, density = 900}\n"
+                             "[grain.p]\nshape = 'polygon'\nspin = 1\n"
+                             "vertices = '0.3 0.4, 1.1 0.43, 1.1 0.5'\n"
+                             "[time]\nend = 0.5\nalpha = 2\n[method]\nshape = 'quadratic'\n";
+    const Run r = run("sliver", sliver);
+    const auto& result = r.summary["results"]["energy_identity"];
+    CHECK(result["verdict"] == "FAIL");
+    const std::string hint = result["hint"].get<std::string>();
+    CHECK(hint.find("lower solver.tolerance") == std::string::npos);
+    CHECK(hint.find("in the corner of 4.977 degrees of grain 'p'") != std::string::npos);
+    CHECK(hint.find("grid.particles_per_side = 3") != std::string::npos);
+    const Run lumped = run("sliver", sliver + " method.mass=lumped");
+    const auto& strays = lumped.summary["results"]["angular_momentum_strays"];
+    CHECK(strays["verdict"] == "FAIL");
+    CHECK(strays["hint"].get<std::string>().find("with grid.particles_per_side = 3 because") !=
+          std::string::npos);
+    for (const char* solver :
+         {"", " solver.kind=newton_krylov", " solver.preconditioner=diagonal"}) {
+        CAPTURE(solver);
+        const Run whole = run("sliver", sliver + " grid.particles_per_side=3" + solver);
+        check_theorem(whole);
+        CHECK(whole.summary["results"]["angular_momentum_strays"]["verdict"] == "PASS");
+    }
+}
+
+TEST_CASE("of what is pressed far the hint names the strain and what makes it worse" *
+          doctest::description("physics")) {
+    const Run r = run("far", "billet", "grain.top.velocity_y=-1e-3 material.default.nu=0.49");
+    const auto& result = r.summary["results"]["layers_beside_plates"];
+    CHECK(result["verdict"] == "FAIL");
+    const std::string hint = result["hint"].get<std::string>();
+    CHECK(hint.find("with nu = 0.49, which makes it stiff") != std::string::npos);
+    CHECK(hint.find("press it by less than a hundredth") != std::string::npos);
+}

@@ -223,4 +223,26 @@ inline std::vector<PlannedGrain> plan_grains(const Problem& problem,
     return grains;
 }
 
+/// What makes the mass matrix regular in a sharp corner.
+inline constexpr const char* sharp_corner_cure =
+    "take grid.particles_per_side = 3, or blunt the corner";
+
+/// The sharpest corner of the grains that can be strained, where it is below 20 degrees and has two particles along
+/// the side of a cell or fewer, in words; empty where there is none. As measured from 5 to 45 degrees: particles
+/// are fewer than nodes in such a corner, and up to 16 degrees the consistent mass matrix may be nearly singular;
+/// with three it is not at 3 degrees.
+inline std::string sharp_corner(const Problem& problem, const std::vector<PlannedGrain>& plans,
+                                const std::vector<Material>& materials) {
+    double sharpest = 20;
+    std::string words;
+    for (const PlannedGrain& plan : plans) {
+        if (materials[plan.material].law == Law::rigid || plan.outline.corners.empty()) continue;
+        const double angle = sharpest_corner(plan.outline.corners);
+        if (!(angle < sharpest) || problem.per_side > 2) continue;
+        sharpest = angle;
+        words = "the corner of " + format(angle) + " degrees of grain '" + plan.name + "'";
+    }
+    return words;
+}
+
 }  // namespace mpm

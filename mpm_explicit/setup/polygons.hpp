@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,20 @@ inline double width(const std::vector<Point>& points) {
         least = std::min(least, farthest);
     });
     return around.size() < 3 ? 0 : least;
+}
+
+/// The sharpest corner that sticks out of a counterclockwise polygon, in degrees.
+inline double sharpest_corner(const std::vector<Point>& corners) {
+    const std::size_t n = corners.size();
+    double sharpest = 180;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Point &before = corners[(k + n - 1) % n], &at = corners[k],
+                    &after = corners[(k + 1) % n];
+        const double ax = at.x - before.x, ay = at.y - before.y, bx = after.x - at.x,
+                     by = after.y - at.y, turned = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
+        sharpest = std::min(sharpest, 180 * (1 - turned / std::numbers::pi));
+    }
+    return sharpest;
 }
 
 /// The distance of a point from the line between a and b.

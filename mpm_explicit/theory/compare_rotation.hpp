@@ -53,15 +53,20 @@ inline std::string cures_of_spin(const FinishedRun& run) {
     const SchemeFacts& scheme = run.planned.scheme;
     std::string cures;
     if (!scheme.implicit && w.transfer != "spin") cures += "set method.transfer = \"spin\", ";
-    if (scheme.implicit && !scheme.consistent_mass) cures += "set method.mass = \"consistent\", ";
+    const std::string corner = sharp_corner(w.problem, run.planned.plans, run.planned.materials);
+    if (scheme.implicit && !scheme.consistent_mass)
+        cures += "set method.mass = \"consistent\"" +
+                 (corner.empty() ? "" : ", with grid.particles_per_side = 3 because of " + corner) +
+                 ", ";
     if (scheme.implicit && w.flip < 1) cures += "set method.flip = 1, ";
     if (scheme.theta > 0.5)
         cures += "set method.theta = 0.5, since " + format(scheme.theta) +
                  " damps what turns in a step, ";
-    if (w.shape != "quadratic") cures += "take method.shape = \"quadratic\", ";
-    // PIC takes more in shorter steps.
-    const bool is_pic = w.flip < 1 || w.transfer == "pic";
-    return cures + "refine the mesh" + (is_pic ? "" : ", or lower time.alpha = " + format(w.alpha));
+    // As measured: other shapes help where the rest is right, and shorter steps the consistent mass alone.
+    if (cures.empty() && w.shape == "linear") cures = "take method.shape = \"gimp\", ";
+    const bool shorter = scheme.implicit && scheme.consistent_mass && w.flip == 1;
+    return cures + "refine the mesh" +
+           (shorter ? ", or lower time.alpha = " + format(w.alpha) : "");
 }
 
 /// Angular momentum about the center of mass, L - X x P, which stays whatever the frame; and the

@@ -70,7 +70,7 @@ class ThetaRecorder {
     void finish(long step, const State& state, common::Run& run) const {
         if (run.history.all().empty()) return;
         const Budget& b = state.budget;
-        compare_energy_theorem(run.history, scheme_, b, run.summary);
+        compare_energy_theorem(run.history, parameters_.problem, scheme_, b, run.summary);
         recorder_.compare_with_theory(step, state.assembly, run);
         warn_of_noise(parameters_, scheme_, scales_.dt, state.assembly, run);
         recorder_.finish_conservation(state.assembly, run);

@@ -116,6 +116,14 @@ inline std::vector<std::string> warnings_of(const Case& parameters, const ThetaS
         warnings.push_back(
             "grid.particles_per_side = 1 with the consistent mass matrix, which is then nearly "
             "singular: take 2, or method.mass = \"lumped\"");
+    const std::vector<Material> materials = materials_of(parameters.problem);
+    const std::string corner =
+        sharp_corner(parameters.problem, plan_grains(parameters.problem, materials), materials);
+    if (!corner.empty() && scheme.consistent())
+        warnings.push_back("in " + corner +
+                           ", below 20, particles are fewer than nodes, and the consistent mass "
+                           "matrix may be nearly singular: " +
+                           sharp_corner_cure);
     return warnings;
 }
 

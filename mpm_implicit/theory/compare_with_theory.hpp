@@ -39,8 +39,9 @@ inline theory::SchemeFacts facts_of(const Case& parameters, const ThetaScheme& s
 }
 
 /// [MPM-13] in every step, and that nothing but loads gives energy.
-inline void compare_energy_theorem(const common::History& history, const ThetaScheme& scheme,
-                                   const Budget& b, common::Summary& summary) {
+inline void compare_energy_theorem(const common::History& history, const Problem& problem,
+                                   const ThetaScheme& scheme, const Budget& b,
+                                   common::Summary& summary) {
     const auto energy = history.column("energy"), external = history.column("external"),
                volume = history.column("volume"), plastic = history.column("plastic");
     double size = std::numeric_limits<double>::min(), growth = 0;
@@ -52,10 +53,16 @@ inline void compare_energy_theorem(const common::History& history, const ThetaSc
     };
     for (std::size_t n = 1; n < energy.size(); ++n)
         growth = std::max(growth, given(n) - given(n - 1));
+    const std::vector<Material> materials = materials_of(problem);
+    const std::string corner = sharp_corner(problem, plan_grains(problem, materials), materials);
     summary.hint(
-        "the theorem is as good as the solution of a step: lower solver.tolerance, which "
-        "is " +
-        common::format(scheme.tolerance));
+        "the theorem is as good as the solution of a step: " +
+        (scheme.tolerance > 1e-13 ? "lower solver.tolerance, which is " + format(scheme.tolerance)
+         : scheme.consistent() && !corner.empty()
+             ? "in " + corner + " the consistent mass matrix is nearly singular; " +
+                   sharp_corner_cure
+             : "round-off leaves no more than solver.tolerance = " + format(scheme.tolerance) +
+                   "; where matrices are nearly singular grid.particles_per_side = 3 helps"));
     summary.result_at_most("energy_identity", b.largest_residual / size, "1", 1e-11,
                            "[MPM-13] with all other work, largest residual of a step over the "
                            "energy");
