@@ -154,8 +154,9 @@ inline void describe_grain(common::ParameterTable& table, const std::string& pre
     table.real(at + "height", g.height, "length", above(0), "of a box");
     table.real(at + "angle", g.angle, "degree", anything(), "turns a box or a regular polygon");
     table.whole(at + "sides", g.sides, "", between(3, 64), "of a regular polygon");
-    table.text(at + "vertices", g.vertices,
-               "polygon: \"x y, x y, x y ...\"; empty: a regular one; many: a pack of a file");
+    table.text(
+        at + "vertices", g.vertices,
+        "polygon: \"x y, x y, x y ...\"; empty: a regular one; many corners: pack.<name>.file");
     table.text(at + "material", g.material, "name of its material");
     table.real(at + "velocity_x", g.velocity_x, "velocity", anything(), "at start; rigid: always");
     table.real(at + "velocity_y", g.velocity_y, "velocity", anything(), "at start; rigid: always");
