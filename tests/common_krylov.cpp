@@ -621,7 +621,7 @@ TEST_CASE("conjugate gradients without convergence return the true residual") {
 }
 
 TEST_CASE("Anderson's acceleration solves a linear iteration in as many rounds as it has unknowns" *
-          doctest::description("mathematics")) {
+          doctest::description("unit")) {
     for (const unsigned seed : {1u, 2u, 3u}) {
         constexpr int n = 6;
         const MatrixXd A = random_matrix(n, seed);  // x <- A x + b itself runs away
