@@ -1,6 +1,7 @@
 #include "common/least_squares.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace common {
 

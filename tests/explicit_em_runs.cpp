@@ -134,7 +134,7 @@ TEST_CASE("a small GEM challenge keeps its energy and its constraints" *
     }
 }
 
-TEST_CASE("momentum along walls is judged, and kept by wide splines with smoothing" *
+TEST_CASE("momentum along walls is judged and wide splines with smoothing keep it" *
           doctest::description("physics")) {
     for (const auto& [walls, drift] :
          {std::pair{"grid.boundary_z=wall", "drift_x=0.05"},

@@ -678,7 +678,7 @@ TEST_CASE("a front that the end of the mesh has stopped is not measured" *
     CHECK(r.summary["results"]["runout"]["verdict"] == "NOT MEASURED");
 }
 
-TEST_CASE("a hint names the transfer, the mesh or the time that is to blame and no other" *
+TEST_CASE("a hint names the transfer or the mesh or the time that is to blame and no other" *
           doctest::description("physics")) {
     const auto hint_of = [](const Run& r, const char* name) {
         const auto& result = r.summary["results"][name];

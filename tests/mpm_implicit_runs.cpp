@@ -732,7 +732,8 @@ TEST_CASE("what walls stop is part of the work of a plate" * doctest::descriptio
 TEST_CASE("what a sharp corner does to the solution of a step is told with what ends it" *
           doctest::description("physics")) {
     // Five degrees: with two particles along a cell they are fewer there than nodes.
-    const std::string sliver = (std::filesystem::temp_directory_path() / "sliver.toml").string();
+    std::filesystem::create_directories(facts::folder_of_test());
+    const std::string sliver = facts::folder_of_test() + "/sliver.toml";
     std::ofstream(sliver) << "grid = {cells_x = 50, cells_y = 50, length_x = 1.4}\n"
                              "material.default = {E = 1e6, nu = 0.3, density = 900}\n"
                              "[grain.p]\nshape = 'polygon'\nspin = 1\n"

@@ -189,13 +189,12 @@ inline std::string begins_too_high(const WaveRecord& w) {
         return sentence("the noise of particles comes to ", w.early,
                         ", above the field of the onset, ", w.level,
                         ": raise particles_per_cell, or follow a mode that grows faster");
-    const double begins = std::max(w.noise, w.amplitude.front());
     if (w.noise < w.level && w.theory.seed > 0)
-        return sentence("the perturbation begins with ", begins, ", above the field of the onset, ",
-                        w.level, ", and only ", w.theory.seed,
+        return sentence("the perturbation begins with ", w.early,
+                        ", above the field of the onset, ", w.level, ", and only ", w.theory.seed,
                         " of it is the growing wave: lower the amplitude ", w.early / w.level,
                         " times or more");
-    return sentence("noise begins with ", begins, ", above the field of the onset, ", w.level,
+    return sentence("noise begins with ", w.early, ", above the field of the onset, ", w.level,
                     ": take loading = \"quiet\", or raise particles_per_cell");
 }
 

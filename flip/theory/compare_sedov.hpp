@@ -148,7 +148,7 @@ inline void compare_sedov(const FinishedRun& run) {
     if (come < needs)
         run.not_measured("shock_radius", "the shock has come ", come,
                          " cells, and the energy starts in ", hot,
-                         ": theory is of energy from a point, and ", needs,
+                         " of them: theory is of energy from a point, and ", needs,
                          " are needed; raise time.end, or refine the mesh and lower region.",
                          hot_region(run.parameters).name, ".radius");
     else

@@ -43,6 +43,19 @@ inline bool knows_seeded_energy(const Case& w) {
            (w.wave == "langmuir" || w.wave == "cold");
 }
 
+/// The part of the usable energy that the seeded wave has: a mean over cos^2 of velocities and fields.
+inline double share_of_wave(const Case& w, double usable) {
+    const UniformCase& u = w.uniform;
+    double sum = 0;  // 4 pi n0 = 1
+    for (const double seed :
+         {u.wave_B_x, u.wave_B_y, u.wave_B_z, u.wave_E_x, u.wave_E_y, u.wave_E_z})
+        sum += 0.25 * seed * seed;
+    for (const SpeciesCase& s : u.species)
+        sum += 0.25 * s.density * s.mass *
+               (s.wave_x * s.wave_x + s.wave_y * s.wave_y + s.wave_z * s.wave_z);
+    return std::min(1.0, sum * w.grid.x.length * w.grid.z.length / usable);
+}
+
 /// The window of a case.
 ///     GEM                      two independent codes keep 0.6 %
 ///     other sheets             3 %, a sixth of what a sheet turns into heat until unit flux
@@ -53,7 +66,7 @@ inline bool knows_seeded_energy(const Case& w) {
 ///                              that moments predict may take beside: friction
 ///     uniform plasma           5 % of what is not the uniform magnetic field, which nothing can use
 /// note:   a leapfrog knows u and B between the times of E; their means at the time of E make the
-///         energy of a wave swing by tan^2(omega dt/2).
+///         energy of a wave swing by tan^2(omega dt/2) of what the wave has.
 /// in:     usable energy at the start; by_theta, what theta has taken of it
 inline EnergyWindow energy_window(const Case& w, double usable, double by_theta) {
     EnergyWindow window;
@@ -94,7 +107,7 @@ inline EnergyWindow energy_window(const Case& w, double usable, double by_theta)
     } else if (w.leapfrog.chosen && wave_of(w) != nullptr) {
         const double angle = std::min(2.0, std::fabs(wave_of(w)->expect(w).omega.real()) * w.dt);
         window.source = "conservation, and E and B known half a step apart: tan^2(omega dt/2)";
-        window.tolerance += std::pow(std::tan(0.5 * angle), 2);
+        window.tolerance += share_of_wave(w, usable) * std::pow(std::tan(0.5 * angle), 2);
     }
     return window;
 }

@@ -67,7 +67,8 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                "time.dt";
     // Of a leapfrog sin(omega dt/2) = omega' dt/2.
     const double leap = grows ? 0 : std::norm(theory.omega) * w.dt * w.dt / 24;
-    if (w.leapfrog.chosen && !theory.of_scheme && leap > 0.3 * tolerance)
+    const bool low = seen.found && seen.frequency() < std::fabs(theory.omega.real());
+    if (w.leapfrog.chosen && !theory.of_scheme && leap > 0.3 * tolerance && !low)
         return "steps of omega dt = " + format(std::abs(theory.omega) * w.dt) +
                " raise the frequency by some " + format(leap) +
                " of it, which this theory of short steps does not have: lower time.dt to " +

@@ -140,7 +140,7 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
 
 /// Fills the grains with particles, for a shape function.
 /// errors: InputError for a grain that does not fit on the mesh
-inline Assembly assemble(const Problem& w, Scheme::Kind shape = Scheme::linear) {
+inline Assembly assemble(const Problem& w, Scheme::Kind shape) {
     const std::vector<Material> materials = materials_of(w);
     const std::vector<PlannedGrain> plans = plan_grains(w, materials);
     const Stretch stretch = profile_bounds(plans);

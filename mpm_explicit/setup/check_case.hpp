@@ -351,9 +351,9 @@ inline double cells_of_impact(const Problem& problem, const Scales& scales) {
         speed = std::max(
             speed, std::hypot(plan.from.velocity_x - p_x / m, plan.from.velocity_y - p_y / m));
     });
-    return scales.impact_speed > 0 && scales.impact_speed <= 0.05 * scales.sound_speed
-               ? std::max(speed, scales.impact_speed) * smallest /
-                     (scales.sound_speed * problem.mesh().h)
+    const double closing = closing_speed(problem, plans, materials);
+    return closing > 0 && scales.impact_speed <= 0.05 * scales.sound_speed
+               ? std::max(speed, closing) * smallest / (scales.sound_speed * problem.mesh().h)
                : 0;
 }
 

@@ -146,7 +146,7 @@ class Pieces {
 ///         upright box that holds whole squares, not at that of the mesh: smooth shapes take every particle for
 ///         a whole square, and where all of them are, an even stress is in equilibrium wherever the box is.
 ///         Linear ones ask for full cells instead
-/// out:    places and volumes, cell by cell, row of cells by row of cells
+/// out:    places and volumes, cell by cell of that lattice, row of cells by row of cells
 /// exact:  sum of volumes and center of mass are those of the outline, to round-off; a disk's moment
 ///         of inertia as well
 /// errors: InputError for an outline that reaches beyond the mesh; in a periodic direction the

@@ -235,10 +235,11 @@ inline std::string sharp_corner(const Problem& problem, const std::vector<Planne
                                 const std::vector<Material>& materials) {
     double sharpest = 20;
     std::string words;
+    if (problem.per_side > 2) return words;
     for (const PlannedGrain& plan : plans) {
         if (materials[plan.material].law == Law::rigid || plan.outline.corners.empty()) continue;
         const double angle = sharpest_corner(plan.outline.corners);
-        if (!(angle < sharpest) || problem.per_side > 2) continue;
+        if (!(angle < sharpest)) continue;
         sharpest = angle;
         words = "the corner of " + format(angle) + " degrees of grain '" + plan.name + "'";
     }

@@ -103,7 +103,9 @@ inline std::string press_hint(const FinishedRun& run, const Press& press) {
                       (nu > 0.4 ? " with nu = " + format(nu) +
                                       ", which makes it stiff where its volume would change"
                                 : "") +
-                      ": press it by less than a hundredth"
+                      ": press it by less than a hundredth, over many periods of its sound, with "
+                      "its "
+                      "surfaces on lines of nodes"
                 : "plates are exact on lines of nodes: move them over many periods of the block's "
                   "sound, with its surfaces on lines of nodes, and lower time.alpha" +
                       std::string(run.parameters.shape == "gimp"
