@@ -1,7 +1,6 @@
 #include "common/least_squares.hpp"
 
 #include <Eigen/QR>
-#include <algorithm>
 
 namespace common {
 
@@ -18,7 +17,7 @@ void AndersonAcceleration::next(const Eigen::VectorXd& f, Eigen::VectorXd& x) {
     }
     last_x_ = x, last_f_ = f;
     x += f;
-    const Eigen::Index known = std::min(count_, depth);
+    const Eigen::Index known = count_ < depth ? count_ : depth;
     if (known > 0)
         x -= (dx_.leftCols(known) + df_.leftCols(known)) * least_squares(df_.leftCols(known), f);
 }
