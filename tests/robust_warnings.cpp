@@ -200,7 +200,7 @@ flip dam_break.toml flip.density=cells flip.pressure=explicit flip.theta=1 flip.
 flip dam_break.toml -> no warning
 flip sphere_hits_plate.toml -> no warning
 pic sod right.density=1 grid.cells_x=200 time.end=0.25
-    warning: the left gas flows over the mesh at Mach 0.4867 behind its wave, below 0.6, where
+    warning: the left fluid flows over the mesh at Mach 0.4867 behind its wave, below 0.6, where
     classical PIC rings, and sound crosses
 flip sod right.density=1 grid.cells_x=200 time.end=0.25 -> no warning
 pic sod right.density=1 grid.cells_x=40 time.end=0.25 -> no warning

@@ -61,7 +61,7 @@ void refuse_bad_bytes(const std::string& text, const std::string& source) {
             refuse("a control character; this is not a text file, or it is damaged");
         if (column > longest_line)
             refuse("the line has more than " + std::to_string(longest_line) +
-                   " letters; name a file with what is long, as a pack of polygons");
+                   " letters; is it a case file? Polygons of many corners go into a pack");
         const bool is_mark = k == 0 && text.compare(0, 3, "\xEF\xBB\xBF") == 0;  // of UTF-8
         if (byte >= 0x80 && inside == '\n' && !is_mark)
             refuse("'" + text.substr(k, length) +

@@ -336,7 +336,7 @@ inline void warn_of_ringing_tube(const Case& parameters, std::vector<std::string
         const double mach = std::fabs(gas.velocity + parameters.frame_x) / c,
                      crossed = c * parameters.end / parameters.grid.x.spacing();
         warn(out, mach > 0.01 && mach < 0.6 && crossed > 30, "the ", left ? "left" : "right",
-             " gas flows over the mesh at Mach ", mach,
+             " fluid flows over the mesh at Mach ", mach,
              " behind its wave, below 0.6, where classical PIC rings, and sound crosses ", crossed,
              " cells there until time.end, more than 30: take flip, or fewer cells");
     }
