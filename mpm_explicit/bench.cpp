@@ -51,7 +51,7 @@ common::StepClock time_steps(const Case& w, long steps, int threads, long& parti
     const double dt = scales.dt;
     const LinearShape shape;
     State state;
-    state.assembly = assemble(w.problem, w.scheme().shape);
+    state.assembly = assemble(w.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     std::vector<RigidMotion>& rigid = state.assembly.rigid;

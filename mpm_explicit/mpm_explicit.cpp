@@ -29,7 +29,7 @@ const common::ProgramInfo info{
 template <class Shape>
 int run_case(const Shape& shape, const Case& parameters, const Scales& scales, common::Run& run) {
     // 2. Particles at t = 0, stresses half a step before.
-    State state{assemble(parameters.problem, parameters.scheme().shape), {}, {}};
+    State state{assemble(parameters.problem), {}, {}};
     auto& [particles, grains, rigid, bonds] = state.assembly;
     const std::vector<AnyLaw> laws = laws_of(parameters.problem);
     const Contact contact(contact_rule(parameters.problem), grains, bonds);

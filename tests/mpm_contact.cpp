@@ -1241,7 +1241,7 @@ namespace {
 // Two grains of a case, the second one moved by (dx, dy) after it has been filled with particles: no case
 // begins with grains in each other. In units of a cell, which is 1.
 double overlap_of(const Case& c, double dx, double dy) {
-    Assembly all = assemble(c.problem, c.scheme().shape);
+    Assembly all = assemble(c.problem);
     for (long p = all.grains[1].begin; p < all.grains[1].end; ++p)
         all.particles.x_p[static_cast<std::size_t>(p)] += dx,
             all.particles.y_p[static_cast<std::size_t>(p)] += dy;
@@ -1258,7 +1258,7 @@ TEST_CASE("a pack has as many grains as its rows have or as it is asked for") {
     loose.kind = "loose", loose.width = 1.6, loose.height = 1.2, loose.count = 7;
     for (const auto& [pack, count] : {std::pair(rows, 3 + 2), std::pair(loose, 7)}) {
         c.problem.packs = {pack};
-        CHECK(std::ssize(assemble(c.problem, c.scheme().shape).grains) == count);
+        CHECK(std::ssize(assemble(c.problem).grains) == count);
     }
 }
 

@@ -11,7 +11,6 @@
 
 #include "mpm_explicit/grains/assembly.hpp"
 #include "mpm_explicit/setup/plan_grains.hpp"
-#include "mpm_explicit/transfer.hpp"
 
 namespace mpm {
 
@@ -33,9 +32,9 @@ inline Stretch profile_bounds(const std::vector<PlannedGrain>& plans) {
 namespace detail {
 
 inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, const Problem& w,
-                          Scheme::Kind shape, const Material& material, Particles& particles) {
+                          const Material& material, Particles& particles) {
     const Mesh mesh = w.mesh();
-    for (FilledPlace at : fill(plan.outline, mesh, w.per_side, shape != Scheme::linear)) {
+    for (FilledPlace at : fill(plan.outline, mesh, w.per_side)) {
         // A grain that straddles the ends of a periodic mesh stays in one piece.
         if (mesh.periodic_x)
             at.x += mesh.length_x() * std::round((plan.outline.x - at.x) / mesh.length_x());
@@ -138,9 +137,9 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
     return bonds;
 }
 
-/// Fills the grains with particles, for a shape function.
+/// Fills the grains with particles.
 /// errors: InputError for a grain that does not fit on the mesh
-inline Assembly assemble(const Problem& w, Scheme::Kind shape) {
+inline Assembly assemble(const Problem& w) {
     const std::vector<Material> materials = materials_of(w);
     const std::vector<PlannedGrain> plans = plan_grains(w, materials);
     const Stretch stretch = profile_bounds(plans);
@@ -151,7 +150,7 @@ inline Assembly assemble(const Problem& w, Scheme::Kind shape) {
         grain.name = plan.name, grain.material = plan.material;
         grain.rigid = material.law == Law::rigid;
         grain.begin = all.particles.count();
-        detail::add_particles(plan, stretch, w, shape, material, all.particles);
+        detail::add_particles(plan, stretch, w, material, all.particles);
         grain.end = all.particles.count();
         grain.mass = std::accumulate(all.particles.m_p.begin() + grain.begin,
                                      all.particles.m_p.begin() + grain.end, 0.0);

@@ -367,6 +367,36 @@ inline std::string impact_warning(double cells, double limit, const std::string&
            ", and on finer meshes more; set " + cure;
 }
 
+/// Warns of rigid plates so thin that nodes within them see both of their sides, whose areas cancel. As measured with
+/// sides off the lines of nodes: of two cells they let what they press in, with gimp from half a cell and with
+/// quadratic shapes from a hundredth.
+inline std::vector<std::string> thin_plate_warnings(const Case& parameters,
+                                                    const std::vector<Material>& materials,
+                                                    const std::vector<PlannedGrain>& plans) {
+    std::vector<std::string> warnings;
+    const Mesh mesh = parameters.problem.mesh();
+    const double enough = parameters.shape == "gimp" ? 2.5 : parameters.shape == "linear" ? 2 : 3;
+    for (const PlannedGrain& plan : plans) {
+        const double thick = thinnest(plan.outline) / mesh.h;
+        const Bounds box = bounds(plan.outline);
+        const bool level = box.y_high - box.y_low < box.x_high - box.x_low;
+        const auto is_off = [&](double side) {
+            const double lines = (side - (level ? mesh.y_low : mesh.x_low)) / mesh.h;
+            return std::fabs(lines - std::round(lines)) > 0.01;
+        };
+        if (materials[plan.material].law == Law::rigid && thick < enough * (1 - 1e-9) &&
+            plan.outline.kind != OutlineKind::disk &&
+            (!is_upright_box(plan.outline) || is_off(level ? box.y_low : box.x_low) ||
+             is_off(level ? box.y_high : box.x_high)))
+            warnings.push_back("rigid grain '" + plan.name + "' is " + format(thick) +
+                               " cells thick, below " + format(enough) +
+                               ": off the lines of nodes method.shape = \"" + parameters.shape +
+                               "\" sees both of its sides at once, and it may let in what it "
+                               "presses; make it thicker, or put its sides on lines");
+    }
+    return warnings;
+}
+
 /// Warnings with the number and the limit, for choices that run but may mislead.
 inline std::vector<std::string> resolution_warnings(const Case& parameters, const Scales& scales) {
     std::vector<std::string> warnings;
@@ -452,6 +482,8 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
         return !is_rigid(plan) && plan.outline.kind != OutlineKind::disk;
     };
     for (const std::string& warning : seam_warnings(problem, materials, plans))
+        warnings.push_back(warning);
+    for (const std::string& warning : thin_plate_warnings(parameters, materials, plans))
         warnings.push_back(warning);
     if (parameters.shape != "linear" &&
         std::ranges::any_of(bonds_of(problem, plans, materials), grips))

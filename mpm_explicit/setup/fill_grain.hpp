@@ -142,11 +142,8 @@ class Pieces {
 /// The particles of a grain: one for each square of a lattice, for the part of it that is inside, at
 /// the centroid of that part. Squares are h / per_side wide. A part below a quarter of a square
 /// goes to its neighbors in the cell.
-/// in:     per_side, particles per cell and direction; tiled, whether the lattice begins at the corner of an
-///         upright box that holds whole squares, not at that of the mesh: smooth shapes take every particle for
-///         a whole square, and where all of them are, an even stress is in equilibrium wherever the box is.
-///         Linear ones ask for full cells instead
-/// out:    places and volumes, cell by cell of that lattice, row of cells by row of cells
+/// in:     per_side, particles per cell and direction
+/// out:    places and volumes, cell by cell, row of cells by row of cells
 /// exact:  sum of volumes and center of mass are those of the outline, to round-off; a disk's moment
 ///         of inertia as well
 /// errors: InputError for an outline that reaches beyond the mesh; in a periodic direction the
@@ -155,8 +152,7 @@ class Pieces {
 ///         out, by some hundredths of the spacing, to make up for it. So do the parts of its outline, by
 ///         h^2/12R, as nodes see their mean over a cell. Places are rounded to 1e-9 of
 ///         the spacing, so that those that are equal on paper are equal here.
-inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, long per_side,
-                                     bool tiled = false) {
+inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, long per_side) {
     const double spacing = mesh.h / double(per_side);
     const Bounds box = bounds(outline);
     const auto require_room = [&](double low, double high, double room_low, double room_high,
@@ -171,19 +167,11 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
     if (mesh.periodic_x) require_room(box.x_low, box.x_high, box.x_low, box.x_low + wrapped, "x");
     require_room(box.y_low, box.y_high, mesh.y_low, mesh.y_high(), "y");
 
-    const auto fine = [&](double length) {
-        return std::ldexp(std::round(std::ldexp(length / spacing, 30)), -30);
-    };
-    const auto fraction = [](double length) { return length - std::floor(length); };
-    const bool whole_squares = tiled && is_upright_box(outline) &&
-                               fraction(fine(box.x_high - box.x_low)) == 0 &&
-                               fraction(fine(box.y_high - box.y_low)) == 0;
-    // Where the lattice begins, in squares of that of the mesh.
-    const Point first = whole_squares ? Point{fraction(fine(box.x_low - mesh.x_low)),
-                                              fraction(fine(box.y_low - mesh.y_low))}
-                                      : Point{0, 0};
     const auto lattice = [&](double x, double y) -> Point {
-        return {fine(x - mesh.x_low) - first.x, fine(y - mesh.y_low) - first.y};
+        const auto fine = [&](double length) {
+            return std::ldexp(std::round(std::ldexp(length / spacing, 30)), -30);
+        };
+        return {fine(x - mesh.x_low), fine(y - mesh.y_low)};
     };
     Outline on_lattice = outline;
     const Point center = lattice(outline.x, outline.y);
@@ -217,7 +205,6 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
             particle.surface.push_back({spacing * part.area_x, spacing * part.area_y,
                                         spacing * (at.x - p.x), spacing * (at.y - p.y), part.side});
         }
-        p.x += first.x, p.y += first.y;
         const double all = double(mesh.cells_x * per_side);
         if (mesh.periodic_x) p.x -= all * std::floor(p.x / all);
         particle.x = mesh.x_low + p.x * spacing, particle.y = mesh.y_low + p.y * spacing;

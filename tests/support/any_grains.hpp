@@ -34,7 +34,7 @@ struct Run {
         : parameters(c),
           scales(scales_of(c)),
           dt(step_size > 0 ? step_size : scales.dt),
-          state{assemble(c.problem, c.scheme().shape), {}, {}},
+          state{assemble(c.problem), {}, {}},
           laws(laws_of(c.problem)),
           contact(contact_rule(c.problem), state.assembly.grains, state.assembly.bonds),
           nodes(c.problem.mesh(), c.scheme().width(), scales.least_mass) {
