@@ -568,7 +568,8 @@ TEST_CASE("a slow wave that noise covers is not measured and another one is not 
         const std::string told = said("cic/cases/ion_acoustic.toml",
                                       std::string(start) +
                                           " time.end=150 species.ions.particles_per_cell=200 "
-                                          "species.electrons.particles_per_cell=200");
+                                          "species.electrons.particles_per_cell=200 "
+                                          "species.electrons.amplitude=0.003");
         says(told,
              "NOT MEASURED omega_over_theory: cannot be measured, because the wave of theory "
              "has 1.635 periods");
