@@ -453,6 +453,11 @@ grains rolling_cylinder.toml grid.cells_x=220 grid.cells_y=44
     warning: a disk has a radius of 11 cells, below 12
 grains rolling_cylinder.toml grid.cells_x=240 grid.cells_y=48 -> no warning
 grains rolling_cylinder.toml contact.friction=0 -> no warning
+mpm_implicit billet.toml theory.compare=none method.shape=gimp grain.billet.y=0.318 grain.bottom.y=0.068 \
+    grain.top.y=0.568 grid.cells_y=14
+    warning: rigid grain 'bottom' is 2 cells thick, below 2.5: off the lines of nodes
+    warning: rigid grain 'top' is 2 cells thick, below 2.5
+mpm_implicit billet.toml theory.compare=none method.shape=gimp -> no warning
 mpm_implicit billet.toml theory.compare=none time.alpha=1 time.end=4 method.theta=0.5 grain.top.velocity_y=-0.01
     warning: method.theta = 0.5 damps nothing that rings, and in what is pressed noise may grow by a
     warning: grains are strained by 0.1, above 0.05
