@@ -14,7 +14,17 @@ Eigen::VectorXd least_squares(const Eigen::Ref<const Eigen::MatrixXd>& A, const 
 class AndersonAcceleration {
    public:
     /// in: f, what x lacks by the plain iteration. in/out: x, the next guess
-    void next(const Eigen::VectorXd& f, Eigen::VectorXd& x);
+    void next(const Eigen::VectorXd& f, Eigen::VectorXd& x) {
+        if (last_f_.size() > 0) {
+            if (count_ == 0) dx_.setZero(x.size(), depth), df_ = dx_;
+            dx_.col(count_ % depth) = x - last_x_;
+            df_.col(count_++ % depth) = f - last_f_;
+        }
+        last_x_ = x, last_f_ = f;
+        x += f;
+        if (const Eigen::Index known = count_ < depth ? count_ : depth; known > 0)
+            x -= (dx_ + df_).leftCols(known) * least_squares(df_.leftCols(known), f);
+    }
 
    private:
     static constexpr Eigen::Index depth = 8;

@@ -21,12 +21,8 @@ std::size_t utf8_length(std::string_view text, std::size_t k) {
     const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
     if (length > 1 && (first < 0xC2 || first > 0xF4)) return 0;
     // No longer form than needed, no surrogate, nothing above U+10FFFF.
-    const unsigned low = first == 0xE0   ? 0xA0
-                         : first == 0xF0 ? 0x90
-                                         : 0x80,
-                   high = first == 0xED   ? 0x9F
-                          : first == 0xF4 ? 0x8F
-                                          : 0xBF;
+    const unsigned low = first == 0xE0 ? 0xA0 : (first == 0xF0 ? 0x90 : 0x80);
+    const unsigned high = first == 0xED ? 0x9F : (first == 0xF4 ? 0x8F : 0xBF);
     for (std::size_t n = 1; n < length; ++n)
         if (byte(n) < (n == 1 ? low : 0x80) || byte(n) > (n == 1 ? high : 0xBF)) return 0;
     return length;

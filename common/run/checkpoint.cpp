@@ -154,18 +154,16 @@ void CheckpointReader::read_in_pieces(std::uint64_t bytes,
 std::size_t CheckpointReader::begin_block(const std::string& name, char type, std::size_t size) {
     const Header header = read_header();
     if (header.name == end_of_file && name != end_of_file) refuse("ends too early");
-    if (header.name != name || header.type != type)
-        throw InputError(path_ + ": holds '" + header.name + "' where '" + name +
-                         "' is expected; another build wrote it");
+    common::refuse(header.name != name || header.type != type, path_, ": holds '", header.name,
+                   "' where '", name, "' is expected; another build wrote it");
     if (header.count > left_ / size) refuse("is cut off or too long");
     return header.count;
 }
 
 void CheckpointReader::require_length(const std::string& name, std::size_t found,
                                       std::size_t wanted) const {
-    if (found == wanted) return;
-    throw InputError(path_ + ": '" + name + "' has " + std::to_string(found) + " values where " +
-                     std::to_string(wanted) + " are expected; another build wrote it");
+    common::refuse(found != wanted, path_, ": '", name, "' has ", found, " values where ", wanted,
+                   " are expected; another build wrote it");
 }
 
 std::string CheckpointReader::text(const std::string& name) {

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -195,10 +196,11 @@ void look_for_earlier_run(const ProgramInfo& info, const ParameterTable& table,
                          bound = one.value("at_most", std::fabs(expected));
             // What a scheme has exactly differs by rounding, which has no order.
             const bool order = before > 0 && error > 1e-10 * bound && (*of == 'e' || bound > 1e-8);
-            std::printf(order         ? " %11.4g (%5.2f)"
-                        : before >= 0 ? " %11.4g (    -)"
-                                      : " %11.4g",
-                        error, std::log2(before / error));
+            std::printf(" %11.4g", error);
+            if (order)
+                std::printf(" (%5.2f)", std::log2(before / error));
+            else if (before >= 0)
+                std::printf(" (    -)");
             before = error;
         }
         std::printf("\n");
@@ -307,6 +309,17 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
     std::vector<std::string> overrides;
     std::string to_verify;
     bool help = false, version = false;
+    const std::map<std::string, std::string*> paths{{"--out", &command.out_dir},
+                                                    {"--restart", &command.restart_path},
+                                                    {"--verify", &to_verify}};
+    const std::map<std::string, bool*> flags{{"--dry-run", &command.dry_run},
+                                             {"--quiet", &command.quiet},
+                                             {"--force", &command.force},
+                                             {"--resume", &command.resume},
+                                             {"--strict", &command.strict},
+                                             {"--version", &version},
+                                             {"--help", &help},
+                                             {"-h", &help}};
     std::set<std::string> seen;
     for (int k = 1; k < argc; ++k) {
         std::string argument = argv[k], value;
@@ -322,16 +335,9 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
                    " needs a value: ", argument, number ? " 2" : " PATH");
             return argv[++k];
         };
-        const auto sets = [&](const char* name, bool& flag) {
-            if (argument == name) flag = true;
-            return argument == name;
-        };
-        if (argument == "--out" || argument == "--restart" || argument == "--verify") {
-            std::string& path = argument == "--out"       ? command.out_dir
-                                : argument == "--restart" ? command.restart_path
-                                                          : to_verify;
-            path = value_of();
-            refuse(path.empty(), argument, " needs a path that is not empty");
+        if (const auto path = paths.find(argument); path != paths.end()) {
+            *path->second = value_of();
+            refuse(path->second->empty(), argument, " needs a path that is not empty");
         } else if (argument == "--threads") {
             command.threads = whole_number(argument, value_of(), 1, 1024);
         } else if (argument == "--refine") {
@@ -339,18 +345,15 @@ CommandLine read_command_line(int argc, char** argv, const ProgramInfo& info,
         } else if (is_option && joined) {
             refuse(true, "'", argument,
                    "' takes no value, or is unknown; --help lists all options");
-        } else if (sets("--dry-run", command.dry_run) || sets("--quiet", command.quiet) ||
-                   sets("--force", command.force) || sets("--resume", command.resume) ||
-                   sets("--strict", command.strict) || sets("--version", version) ||
-                   sets("--help", help) || sets("-h", help)) {
-            continue;
+        } else if (const auto flag = flags.find(argument); flag != flags.end()) {
+            *flag->second = true;
         } else if (is_option) {
             std::string guess;
             for (const std::string name : option_names)
                 if (name.starts_with(argument.substr(0, 4))) guess = name;
-            throw InputError(
-                "unknown option '" + argument + "'" +
-                (guess.empty() ? "; --help lists all options" : "; did you mean '" + guess + "'?"));
+            refuse(
+                true, "unknown option '", argument,
+                guess.empty() ? "'; --help lists all options" : "'; did you mean '" + guess + "'?");
         } else if (argument.find('=') != std::string::npos && !is_there(argument)) {
             overrides.push_back(argument);
         } else if (argument.empty()) {

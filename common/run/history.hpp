@@ -1,6 +1,8 @@
 // One row per step, in columns for gnuplot: history.dat, and the same numbers in memory.
 #pragma once
 
+#include <gsl/gsl_fit.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,7 +13,7 @@
 #include <vector>
 
 #include "common/run/output_file.hpp"
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -58,11 +60,10 @@ class History {
             throw std::logic_error("history: a row of the wrong length");
         for (std::size_t k = 0; k < values.size(); ++k)
             if (!std::isfinite(values[k]))
-                throw NumericalError(
-                    "'" + columns_[k].name + "' is not finite in the row after " +
-                    columns_[0].name + " = " +
-                    (values_.empty() ? "(no row yet)"
-                                     : number_text(values_[values_.size() - columns_.size()])));
+                fail("'", columns_[k].name, "' is not finite in the row after ", columns_[0].name,
+                     " = ",
+                     values_.empty() ? "(no row yet)"
+                                     : number_text(*(values_.end() - long(columns_.size()))));
         if (file_ == nullptr) open();
         values_.insert(values_.end(), values.begin(), values.end());
         write(values);
@@ -77,23 +78,15 @@ class History {
     }
 
     /// The first value of a column. errors: logic_error for a name that is not a column, or no row.
-    double first(const std::string& name) const {
-        for (std::size_t k = 0; k < columns_.size() && k < values_.size(); ++k)
-            if (columns_[k].name == name) return values_[k];
-        throw std::logic_error("history: no value in '" + name + "'");
-    }
+    double first(const std::string& name) const { return values_.at(index_of(name)); }
 
     /// Everything recorded so far in one column.
     /// errors: logic_error for a name that is not a column.
     std::vector<double> column(const std::string& name) const {
-        for (std::size_t k = 0; k < columns_.size(); ++k) {
-            if (columns_[k].name != name) continue;
-            std::vector<double> result;
-            for (std::size_t n = k; n < values_.size(); n += columns_.size())
-                result.push_back(values_[n]);
-            return result;
-        }
-        throw std::logic_error("history: no column '" + name + "'");
+        std::vector<double> result;
+        for (std::size_t n = index_of(name); n < values_.size(); n += columns_.size())
+            result.push_back(values_[n]);
+        return result;
     }
 
     /// The columns name_re and name_im.
@@ -139,6 +132,11 @@ class History {
     }
 
    private:
+    std::size_t index_of(const std::string& name) const {
+        const auto found = std::ranges::find(columns_, name, &Column::name);
+        if (found != columns_.end()) return std::size_t(found - columns_.begin());
+        throw std::logic_error("history: no column '" + name + "'");
+    }
     void write(std::span<const double> values) {
         std::string line;
         for (const double value : values)
@@ -170,15 +168,11 @@ inline double time_at_level(const std::vector<double>& times, const std::vector<
 
 /// Slope of the straight line of least squares; 0 for fewer than two different times.
 inline double slope(std::span<const double> times, std::span<const double> values) {
-    const double count = double(times.size());
-    double mean_t = 0, mean_y = 0, along = 0, product = 0;
-    for (std::size_t n = 0; n < times.size(); ++n)
-        mean_t += times[n] / count, mean_y += values[n] / count;
-    for (std::size_t n = 0; n < times.size(); ++n) {
-        along += (times[n] - mean_t) * (times[n] - mean_t);
-        product += (times[n] - mean_t) * (values[n] - mean_y);
-    }
-    return along > 0 ? product / along : 0;
+    if (times.size() < 2 || std::ranges::min(times) == std::ranges::max(times)) return 0;
+    double first, slope, errors[4];
+    gsl_fit_linear(times.data(), 1, values.data(), 1, times.size(), &first, &slope, errors,
+                   errors + 1, errors + 2, errors + 3);
+    return slope;
 }
 
 }  // namespace common

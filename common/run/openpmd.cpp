@@ -54,16 +54,12 @@ void attribute(hid_t parent, const char* name, const std::string& value) {
     write_attribute(parent, name, type.id, H5Screate(H5S_SCALAR), value.c_str());
 }
 void attribute(hid_t parent, const char* name, const std::vector<std::string>& values) {
-    std::string letters;  // axes have names of a few letters
-    constexpr std::size_t width = 16;
-    for (const std::string& one : values) {
-        letters += one.substr(0, width - 1);
-        letters.resize((letters.size() / width + 1) * width, '\0');
-    }
+    std::vector<const char*> texts;
+    for (const std::string& one : values) texts.push_back(one.c_str());
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    require(H5Tset_size(type.id, width));
+    require(H5Tset_size(type.id, H5T_VARIABLE));
     const hsize_t count = values.size();
-    write_attribute(parent, name, type.id, H5Screate_simple(1, &count, nullptr), letters.data());
+    write_attribute(parent, name, type.id, H5Screate_simple(1, &count, nullptr), texts.data());
 }
 
 /// The numbers of one component, compressed and with a checksum; the dataset stays open.

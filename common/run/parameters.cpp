@@ -10,6 +10,7 @@
 
 #include "common/ranks.hpp"
 #include "common/run/formula.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -194,18 +195,15 @@ void ParameterTable::make_item(const Setting& setting) {
         const std::size_t dot = setting.name.find('.', start.size());
         if (dot == std::string::npos) {
             if (find(setting.name) != nullptr) return;  // a section beside its list
-            throw InputError(setting.place + ": '" + setting.name +
-                             "' needs the name of an item: write [" + list.name +
-                             ".<name>] above its parameters");
+            refuse(true, setting.place, ": '", setting.name, "' needs the name of an item: write [",
+                   list.name, ".<name>] above its parameters");
         }
         const std::string item = setting.name.substr(start.size(), dot - start.size());
         if (std::ranges::find(list.items, item) != list.items.end()) return;
-        if (!is_word(item))
-            throw InputError(setting.place + ": '" + item +
-                             "' cannot name an item: use letters, digits and '_', a letter first");
-        if (list.items.size() == most_items)
-            throw InputError(setting.place + ": more than " + std::to_string(most_items) +
-                             " items in [" + list.name + "]: take some out");
+        refuse(!is_word(item), setting.place, ": '", item,
+               "' cannot name an item: use letters, digits and '_', a letter first");
+        refuse(list.items.size() == most_items, setting.place, ": more than ", most_items,
+               " items in [", list.name, "]: take some out");
         for (const std::string& other : list.items)
             if (setting.place.starts_with("command line") && is_first_rank() &&
                 edit_distance(item, other) <= item.size() / 4)
@@ -227,16 +225,16 @@ void ParameterTable::accept_empty_section(const Setting& setting) {
                             [&](const Entry& entry) { return entry.name.starts_with(start); }) ||
         std::ranges::any_of(lists_, [&](const List& list) { return list.name == setting.name; });
     if (known) return;
-    if (const std::string now = new_name(start); !now.empty())
-        throw InputError(setting.place + ": [" + setting.name + "] has a new name: write [" +
-                         now.substr(0, now.size() - 1) + "]");
+    const std::string now = new_name(start);
+    refuse(!now.empty(), setting.place, ": [", setting.name, "] has a new name: write [",
+           now.substr(0, now.size() - !now.empty()), "]");
     std::string guess = in_nearest_list(setting.name);
     if (guess.empty()) {
         const std::string parameter = nearest(setting.name);
         guess = parameter.substr(0, std::min(parameter.rfind('.'), parameter.size()));
     }
-    throw InputError(setting.place + ": unknown section [" + setting.name + "]" +
-                     (guess.empty() ? "; --help lists all" : "; did you mean [" + guess + "]?"));
+    refuse(true, setting.place, ": unknown section [", setting.name, "]",
+           guess.empty() ? "; --help lists all" : "; did you mean [" + guess + "]?");
 }
 
 void ParameterTable::set(const Setting& setting) {
@@ -245,18 +243,16 @@ void ParameterTable::set(const Setting& setting) {
     make_item(setting);
     Entry* entry = find(setting.name);
     if (entry == nullptr) {
-        if (const std::string now = new_name(setting.name); find(now) != nullptr)
-            throw InputError(setting.place + ": '" + setting.name + "' has a new name: write '" +
-                             now + "'");
-        const std::string guess = nearest(setting.name);
-        throw InputError(setting.place + ": unknown parameter '" + setting.name + "'" +
-                         (!guess.empty() ? "; did you mean '" + guess + "'?"
-                          : setting.place.starts_with("command line")
-                              ? "; --help lists all"
-                              : "; --help lists all; is the case one of this program?"));
+        const std::string now = new_name(setting.name), guess = nearest(setting.name);
+        refuse(find(now) != nullptr, setting.place, ": '", setting.name,
+               "' has a new name: write '", now, "'");
+        const bool of_file = !setting.place.starts_with("command line");
+        refuse(true, setting.place, ": unknown parameter '", setting.name,
+               !guess.empty() ? "'; did you mean '" + guess + "'?" : "'; --help lists all",
+               guess.empty() && of_file ? "; is the case one of this program?" : "");
     }
-    const auto refuse = [&](const std::string& why) {
-        throw InputError(setting.place + ": '" + setting.name + "'" + why);
+    const auto refuse_value = [&](const auto&... why) {
+        refuse(true, setting.place, ": '", setting.name, "'", why...);
     };
     const bool* truth = std::get_if<bool>(&setting.value);
     const long* integer = std::get_if<long>(&setting.value);
@@ -266,12 +262,13 @@ void ParameterTable::set(const Setting& setting) {
     const double value = number != nullptr ? *number : integer != nullptr ? double(*integer) : 0;
     const auto require = [&](bool right_type, const std::string& type) {
         const std::string found = kind_of(setting) + (text != nullptr ? " " + quoted(*text) : "");
-        if (!right_type) refuse(" takes " + type + ", not " + found);
+        if (!right_type) refuse_value(" takes ", type, ", not ", found);
         if (!is_number) return;
-        if (!std::isfinite(value)) refuse(" must be finite, not " + number_text(value));
+        if (!std::isfinite(value)) refuse_value(" must be finite, not ", number_text(value));
         if (!contains(entry->allowed, value))
-            refuse(" = " + number_text(value) + " is out of range; allowed: " +
-                   text_of(entry->allowed) + (entry->unit.empty() ? "" : " " + entry->unit));
+            refuse_value(" = ", number_text(value),
+                         " is out of range; allowed: ", text_of(entry->allowed),
+                         entry->unit.empty() ? "" : " " + entry->unit);
     };
     const auto number_of = [&](const char* type) {
         require(is_number, type);
@@ -279,8 +276,8 @@ void ParameterTable::set(const Setting& setting) {
         const double size = std::fabs(value);
         if (!std::holds_alternative<long*>(entry->target) && size != 0 &&
             !(size > 1e-40 && size < 1e40))
-            refuse(" = " + number_text(value) +
-                   " is not between 1e-40 and 1e40 in size: choose other units");
+            refuse_value(" = ", number_text(value),
+                         " is not between 1e-40 and 1e40 in size: choose other units");
         return value;
     };
     Formula** const formula = std::get_if<Formula*>(&entry->target);
@@ -290,7 +287,7 @@ void ParameterTable::set(const Setting& setting) {
     } else if (auto whole = std::get_if<long*>(&entry->target)) {
         number_of("a whole number");
         if (value != std::floor(value) || std::fabs(value) > 9007199254740992.0)
-            refuse(" takes a whole number, not " + number_text(value));
+            refuse_value(" takes a whole number, not ", number_text(value));
         **whole = long(value);
     } else if (auto real = std::get_if<double*>(&entry->target)) {
         **real = number_of("a number");
@@ -307,16 +304,16 @@ void ParameterTable::set(const Setting& setting) {
                                  : list.empty() ? "text"
                                                 : "text, one of " + list);
         if (std::ranges::any_of(*text, [](unsigned char c) { return std::iscntrl(c); }))
-            refuse(" holds a control character; write plain text");
+            refuse_value(" holds a control character; write plain text");
         if (!choices.empty() && std::ranges::find(choices, *text) == choices.end())
-            refuse(" = " + quoted(*text) + " is not one of " + list);
+            refuse_value(" = ", quoted(*text), " is not one of ", list);
         if (text->size() > longest_text)
-            refuse(" has " + std::to_string(text->size()) + " letters; write at most " +
-                   std::to_string(longest_text) + " (" + entry->meaning + ")");
+            refuse_value(" has ", text->size(), " letters; write at most ", longest_text, " (",
+                         entry->meaning, ")");
         if (formula == nullptr)
             **std::get_if<std::string*>(&entry->target) = *text;
         else if (text->empty())
-            refuse(" is empty; write a number or a formula");
+            refuse_value(" is empty; write a number or a formula");
         else
             **formula = Formula(*text, setting.place + ": '" + setting.name + "'", entry->allowed);
     }

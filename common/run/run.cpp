@@ -20,7 +20,6 @@
 #include "common/parallel.hpp"
 #include "common/run/machine.hpp"
 #include "common/run/output_file.hpp"
-#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -77,10 +76,9 @@ void forget_on_signal(const std::string& sentence, const std::vector<std::string
 
 // A signal that is ignored (nohup) stays ignored.
 void listen_to(int signal) {
-    struct sigaction old {};
-    sigaction(signal, nullptr, &old);
-    if (old.sa_handler == SIG_IGN) return;
     struct sigaction action {};
+    sigaction(signal, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) return;
     action.sa_handler = ask_to_stop;
     action.sa_flags = SA_RESTART;
     sigaction(signal, &action, nullptr);

@@ -13,6 +13,7 @@
 #include "common/run/checkpoint.hpp"
 #include "common/run/history.hpp"
 #include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 #include "common/run/summary.hpp"
 
 namespace common {
@@ -64,10 +65,9 @@ class Run {
             throw InputError(command_.restart_path + ": the checkpoint is of no run: " +
                              error.what() + "; use an earlier one");
         }
-        if (const double last = history.column("time").back(); reached(last, schedule.end))
-            throw InputError(command_.restart_path + ": has a row of t = " + format(last) +
-                             ", and the run ends at t = " + format(schedule.end) +
-                             ": raise time.end");
+        const double last = history.column("time").back();
+        refuse(reached(last, schedule.end), command_.restart_path, ": has a row of t = ", last,
+               ", and the run ends at t = ", schedule.end, ": raise time.end");
         begin();
         history.open();
         first_step_ = step;

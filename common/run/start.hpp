@@ -40,10 +40,9 @@ inline void refuse_unlike_ranks(const CommandLine& command, const ParameterTable
                             std::to_string(command.restart_step) + (command.complete ? "+" : "-") +
                             (command.dry_run ? "+" : "-");
     const long sum = long(std::hash<std::string>()(all) >> 1);
-    if (const long most = largest_over_ranks(sum); sum_over_ranks(long(sum != most)) > 0)
-        throw InputError(
-            "ranks have read different cases, or see different output folders: give all the same "
-            "files, in a folder that all machines share");
+    refuse(sum_over_ranks(long(sum != largest_over_ranks(sum))) > 0,
+           "ranks have read different cases, or see different output folders: give all the same "
+           "files, in a folder that all machines share");
 }
 
 /// Says what the case is and what may mislead in it, and opens the run.

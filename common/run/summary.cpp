@@ -96,6 +96,7 @@ std::string Summary::Entry::wanted() const {
 }
 
 const char* Summary::verdict(const Entry& entry) const {
+    if (!entry.is_judged()) return "";
     if (!entry.is_measured()) return "NOT MEASURED";
     if (entry.meets()) return "PASS";
     return expectation.names(entry.name, entry.value.value) ? "EXPECTED FAILURE" : "FAIL";
@@ -160,7 +161,7 @@ void Summary::write(const std::string& path, const ProgramInfo& info, const std:
 std::vector<std::string> Summary::shortfalls() const {
     std::vector<std::string> sentences;
     for (const Entry& entry : results_) {
-        const std::string word = entry.is_judged() ? verdict(entry) : "PASS";
+        const std::string word = verdict(entry);
         const std::string start = word + " " + entry.name,
                           hint = entry.hint.empty() ? "" : "; " + entry.hint;
         const std::string value = " = " + text_of(entry.value);
@@ -191,8 +192,7 @@ std::vector<std::string> Summary::shortfalls() const {
 
 bool Summary::fell_short() const {
     return std::ranges::any_of(results_, [&](const Entry& entry) {
-        const std::string word = entry.is_judged() ? verdict(entry) : "PASS";
-        return word == "FAIL" || word == "NOT MEASURED";
+        return entry.is_judged() && *verdict(entry) != 'P' && *verdict(entry) != 'E';
     });
 }
 
@@ -209,7 +209,7 @@ std::string Summary::table() const {
             entry.unit.empty() || entry.unit == "1" ? "" : " [" + entry.unit + "]";
         std::snprintf(line, sizeof line, "%-26s %20s   %-20s %-6s %s%s\n", entry.name.c_str(),
                       measured ? text_of(entry.value).c_str() : "", entry.wanted().c_str(),
-                      entry.is_judged() ? verdict(entry) : "", entry.source.c_str(), unit.c_str());
+                      verdict(entry), entry.source.c_str(), unit.c_str());
         text += line;
     }
     return text;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "common/run/output_file.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -79,9 +80,8 @@ namespace writers_detail {
 /// errors: InputError with the path where a list does not have `count` values
 inline void require_length(std::span<const double> values, long count, const std::string& path,
                            const std::string& name) {
-    if (long(values.size()) == count) return;
-    throw InputError(path + ": column '" + name + "' has " + std::to_string(values.size()) +
-                     " values for " + std::to_string(count) + " points");
+    refuse(long(values.size()) != count, path, ": column '", name, "' has ", values.size(),
+           " values for ", count, " points");
 }
 
 /// The first lines of a table: names_and_units(), and for a snapshot "# time 40 step 400", followed

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "common/run/parameters.hpp"
+#include "common/run/sentence.hpp"
 
 namespace common {
 
@@ -352,11 +352,9 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
                const Wanted& wanted, long& block, bool& high) {
     const double dt = times[1] - times[0], slack = 1e-9 * dt;
     Rows rows;
-    while (rows.begin < long(times.size()) && times[std::size_t(rows.begin)] < search.begin - slack)
-        ++rows.begin;
-    rows.end = rows.begin;
-    while (rows.end < long(times.size()) && times[std::size_t(rows.end)] <= search.end + slack)
-        ++rows.end;
+    rows.begin = std::ranges::lower_bound(times, search.begin - slack) - times.begin();
+    rows.end = std::ranges::upper_bound(times, search.end + slack) - times.begin();
+    rows.end = std::max(rows.begin, rows.end);
     const bool grows = wanted.growth > 0 && search.below_maximum < 1;
     const auto size = [&](long n) { return std::abs(z[std::size_t(n)]); };
     // The largest amplitude in some rows, over what the mode grows until then.
@@ -409,9 +407,9 @@ Rows window_of(std::span<const double> times, std::span<const Complex> z, const 
 MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex> z,
                           const ModeSearch& search) {
     MeasuredMode result;
-    const auto cannot = [&](const std::string& why) {
+    const auto cannot = [&](const auto&... why) {
         result.found = false;
-        result.reason = "cannot be measured, because " + why;
+        result.reason = sentence("cannot be measured, because ", why...);
         return result;
     };
     const Wanted wanted(search);
@@ -433,10 +431,10 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
                                      : ": raise time.end";
     if (wanted.growth < 0 && left > 0) cure = "; " + search.faded;
     if (rows.count() < 8 * block)
-        return cannot("only " + std::to_string(std::max(0L, rows.count())) +
+        return cannot("only ", std::max(0L, rows.count()),
                       " rows of the history are between the transient of the start and the end of "
-                      "the linear phase (shorter steps between rows give more)" +
-                      (wanted.growth > 0 ? cure : std::string()));
+                      "the linear phase (shorter steps between rows give more)",
+                      wanted.growth > 0 ? cure : "");
     result.begin = times[std::size_t(rows.begin)], result.end = times[std::size_t(rows.end - 1)];
     const double length = result.end - result.begin;
 
@@ -446,9 +444,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (list.modes.empty()) return cannot(list.reason);
     const std::vector<Mode> modes = told_apart(list, length, wanted);
     if (modes.empty())
-        return cannot("noise is " + format(list.noise) +
-                      " of the record from t = " + format(result.begin) + " to " +
-                      format(result.end) + ", and no mode stands out of it");
+        return cannot("noise is ", list.noise, " of the record from t = ", result.begin, " to ",
+                      result.end, ", and no mode stands out of it");
     Match match = nearest(modes, search.expected);
     if (search.expected.size() > 1) match = of_both_directions(match, modes, wanted.size);
     result.omega = match.mode.omega, result.error = match.mode.error;
@@ -474,16 +471,16 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
                     std::hypot(result.error.imag(), strays.imag())};
 
     // Say what was seen.
-    result.window = "from t = " + format(result.begin) + " to " + format(result.end);
+    result.window = sentence("from t = ", result.begin, " to ", result.end);
     std::string others;
     for (const Mode& mode : modes) {
         const bool same = std::min(std::abs(mode.omega - match.mode.omega),
                                    std::abs(mode.omega + std::conj(match.mode.omega))) <
                           std::abs(match.mode.error) + 1e-6 * wanted.size;
         if (!same && mode.share > 1e-3)
-            others += (others.empty() ? "" : ", ") + format(mode.omega.real()) +
-                      (mode.omega.imag() < 0 ? " - " : " + ") +
-                      format(std::abs(mode.omega.imag())) + " i";
+            others +=
+                sentence(others.empty() ? "" : ", ", mode.omega.real(),
+                         mode.omega.imag() < 0 ? " - " : " + ", std::abs(mode.omega.imag()), " i");
     }
     if (!others.empty()) result.window += "; also seen: omega = " + others;
     const VectorXcd samples = Eigen::Map<const VectorXcd>(record.data(), Index(record.size()));
@@ -494,9 +491,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     const double turns = result.frequency() * length / (2 * pi),
                  folds = std::abs(result.growth()) * length;
     if (turns < 0.999 * search.periods && folds < 0.999 * search.e_foldings)
-        return cannot("it has " + format(turns) + " periods and " + format(folds) +
-                      " e-foldings, below " + format(search.periods) + " and " +
-                      format(search.e_foldings) + ", " + result.window + cure);
+        return cannot("it has ", turns, " periods and ", folds, " e-foldings, below ",
+                      search.periods, " and ", search.e_foldings, ", ", result.window, cure);
     result.found = true;
     return result;
 }
