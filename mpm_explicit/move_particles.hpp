@@ -59,7 +59,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
             double *x_p = particles.x_p.data() + begin, *y_p = particles.y_p.data() + begin,
                    *vx_p = particles.vx_p.data() + begin, *vy_p = particles.vy_p.data() + begin;
             const double* m_p = particles.m_p.data() + begin;
-            places.find(shape, at, x_p, y_p, count);
+            places.find(shape, at, particles, begin, count);
             u.gather(places, nodes.origins(tile.grain), nodes.motion.data(), count);
 #pragma omp simd reduction(+ : kinetic, kinetic_leapfrog, kinetic_increment, lost, momentum_x, momentum_y, angular) \
     reduction(min : x_least, y_least) reduction(max : x_most, y_most)

@@ -76,6 +76,9 @@ struct Particles {
     // [length]; or empty.
     std::vector<double> from_x_p, from_y_p;
 
+    // Of mpm_implicit with gimp: half its sides, in cells, where outlines cut some; or empty.
+    std::vector<double> half_x_p, half_y_p;
+
     Surface surface;  // empty: contact goes by the particles themselves
 
     std::vector<double> turn_p;  // of mpm_implicit: tan of half a step's turn; or empty
@@ -87,6 +90,7 @@ struct Particles {
     }
     std::array<std::vector<double>*, 4> affine() { return {&cxx_p, &cxy_p, &cyx_p, &cyy_p}; }
     std::array<std::vector<double>*, 2> from() { return {&from_x_p, &from_y_p}; }
+    std::array<std::vector<double>*, 2> half_sides() { return {&half_x_p, &half_y_p}; }
     bool has_affine() const { return !cxx_p.empty(); }
     void resize(std::size_t count) {
         for (std::vector<double>* quantity : all()) quantity->resize(count, 0.0);
@@ -106,6 +110,7 @@ void archive(Archive& a, Particles& particles) {
     static constexpr std::array<const char*, 4> affine{"cxx_p", "cxy_p", "cyx_p", "cyy_p"};
     for (std::size_t k = 0; k < affine.size(); ++k) a(affine[k], *particles.affine()[k]);
     a("from_x_p", particles.from_x_p), a("from_y_p", particles.from_y_p);
+    a("half_x_p", particles.half_x_p), a("half_y_p", particles.half_y_p);
     a("turn_p", particles.turn_p);
     a("surface_host", particles.surface.host);
     a("surface_side", particles.surface.side);

@@ -24,7 +24,8 @@ struct Weights {
 /// x_p in cells from node 0; per_h = 1/h.
 struct LinearShape {
     static constexpr int width = 2;
-    static constexpr double least = 1e-15;  // weight: round-off
+    static constexpr bool has_sides = false;  // those of particles
+    static constexpr double least = 1e-15;    // weight: round-off
     Weights<2> operator()(double x, double per_h) const {
         // On a line of nodes, the node beyond is seen a little: a gradient asks for its velocity.
         const double cell = std::floor(x), way = x - cell, d = way > least ? way : least;
@@ -34,6 +35,7 @@ struct LinearShape {
 
 struct QuadraticShape {
     static constexpr int width = 3;
+    static constexpr bool has_sides = false;
     Weights<3> operator()(double x, double per_h) const {
         const double node = std::floor(x + 0.5), d = x - node;
         return {static_cast<int>(node) - 1,
@@ -45,6 +47,7 @@ struct QuadraticShape {
 /// half: half the particle's side, in cells, at most 1/2.
 struct GimpShape {
     static constexpr int width = 3;
+    static constexpr bool has_sides = true;
     double half = 0.25;
 
     Weights<3> operator()(double x, double per_h) const {

@@ -58,11 +58,9 @@ void velocity_gradient(const Shape& shape, const Particles& particles, const Gra
     const Locator at(nodes.mesh());
     const long* origin = nodes.origins(batch.grain);
     const NodeMotion* motion = nodes.motion.data();
-    const double *x_p = particles.x_p.data() + batch.begin,
-                 *y_p = particles.y_p.data() + batch.begin;
     static_assert(ParticleBatch::size <= Places<Shape>::size);
     Places<Shape> places;
-    places.find(shape, at, x_p, y_p, batch.count);
+    places.find(shape, at, particles, batch.begin, batch.count);
     for (long k = 0; k < batch.count; ++k) {
         Two along_x{}, along_y{};  // of the velocity: its derivatives
         places.for_each_node(k, origin, [&](long dof, double, double Gx, double Gy) {
@@ -99,10 +97,8 @@ void add_force(const Shape& shape, const Particles& particles, const ParticleBat
     const Locator at(nodes.mesh());
     const long* origin = nodes.origins(batch.grain);
     NodeForce* force = nodes.force.data();
-    const double *x_p = particles.x_p.data() + batch.begin,
-                 *y_p = particles.y_p.data() + batch.begin;
     Places<Shape> places;
-    places.find(shape, at, x_p, y_p, batch.count);
+    places.find(shape, at, particles, batch.begin, batch.count);
     for (long k = 0; k < batch.count; ++k) {
         const Two minus_x{-V_s.xx[k], -V_s.xy[k]}, minus_y{-V_s.xy[k], -V_s.yy[k]};
         places.for_each_node(k, origin, [&](long dof, double, double Gx, double Gy) {

@@ -49,7 +49,7 @@ void surface_to_grid(const Shape& shape, const Particles& particles, GrainNodes&
         const double x = particles.x_p[p], y = particles.y_p[p], a_x = s.ax[k], a_y = s.ay[k];
         const SideSums carried{
             a_x, a_y, a_x * x + s.xx[k], a_x * y + s.xy[k], a_y * x + s.yx[k], a_y * y + s.yy[k]};
-        for_each_node(shape, at, nodes.origins(tile.grain), x, y,
+        for_each_node(own_shape(shape, particles, p), at, nodes.origins(tile.grain), x, y,
                       [&](long dof, double S, double, double) {
                           const int to = nodes.surface_of(dof);
                           if (to >= 0) nodes.surface[s.side[k]][to] += carried.times(S);
@@ -86,7 +86,8 @@ void carry_surface(const Shape& shape, const std::vector<Grain>& grains, const G
     for_each_host(nodes, s, [&](const Tile& tile, std::size_t p, std::size_t k) {
         if (grains[tile.grain].rigid) return;
         double xx = 0, xy = 0, yx = 0, yy = 0;
-        for_each_node(shape, at, nodes.origins(tile.grain), particles.x_p[p], particles.y_p[p],
+        for_each_node(own_shape(shape, particles, p), at, nodes.origins(tile.grain),
+                      particles.x_p[p], particles.y_p[p],
                       [&](long dof, double, double Gx, double Gy) {
                           const NodeMotion& v = nodes.motion[dof];
                           xx += Gx * v.vx_1, xy += Gy * v.vx_1;

@@ -168,7 +168,7 @@ void particles_to_grid(const Shape& shape, const Particles& particles, GrainNode
         Places<Shape> places;
         for (long begin = tile.begin; begin < tile.end; begin += places.size) {
             const long count = std::min(places.size, tile.end - begin);
-            places.find(shape, at, x_p + begin, y_p + begin, count);
+            places.find(shape, at, particles, begin, count);
             for (long k = 0; k < count; ++k) {
                 const long p = begin + k;
                 const double x = x_p[p], y = y_p[p], m = m_p[p], V = V_p[p];

@@ -41,7 +41,7 @@ void move_particles(const Shape& shape, const std::vector<Grain>& grains,
         Extremes seen;
         for (long p = tile.begin; p < tile.end; ++p) {
             double ux = 0, uy = 0, wx = 0, wy = 0;  // v^0 and v^theta of the nodes here
-            for_each_node(shape, at, origin, x_p[p], y_p[p],
+            for_each_node(own_shape(shape, particles, std::size_t(p)), at, origin, x_p[p], y_p[p],
                           [&](long dof, double S, double, double) {
                               const NodeMotion& v = motion[dof];
                               ux += S * v.vx_0, uy += S * v.vy_0;

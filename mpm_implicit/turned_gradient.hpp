@@ -73,7 +73,7 @@ void add_turned_force(const Shape& shape, const Particles& particles, const Part
         const double t = turn[k], c = 1 / (1 + t * t);
         const double xx = c * (V_s.xx[k] + t * V_s.xy[k]), xy = c * (V_s.xy[k] - t * V_s.xx[k]),
                      yx = c * (V_s.xy[k] + t * V_s.yy[k]), yy = c * (V_s.yy[k] - t * V_s.xy[k]);
-        for_each_node(shape, at, origin, x_p[k], y_p[k],
+        for_each_node(own_shape(shape, particles, b + std::size_t(k)), at, origin, x_p[k], y_p[k],
                       [&](long dof, double, double Gx, double Gy) {
                           nodes.force[dof].x -= xx * Gx + xy * Gy;
                           nodes.force[dof].y -= yx * Gx + yy * Gy;

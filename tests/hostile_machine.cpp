@@ -321,7 +321,7 @@ TEST_CASE("a program takes the cores and the memory that its affinity and its co
     // A group of either version of control groups, with limits, if one may be made here.
     const std::string name = "particle_in_cell_" + std::to_string(getpid());
     const auto grouped = [&](const std::string& controller, const std::string& limits) {
-        for (const std::string root :
+        for (const std::string& root :
              {"/sys/fs/cgroup/" + controller, std::string("/sys/fs/cgroup")}) {
             const std::string group = root + "/" + name;
             const Outcome made =

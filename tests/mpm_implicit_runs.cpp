@@ -461,6 +461,23 @@ TEST_CASE("a plate presses a block evenly little above a line of nodes" *
     }
 }
 
+TEST_CASE("gimp presses a block evenly wherever its plates are in their cells" *
+          doctest::description("physics")) {
+    // With squares alike, layers beside the plates differ by .03 to .056 here.
+    for (const auto& [bottom, block, top] : {std::array{"0.14", "0.415", "0.69"},
+                                             {"0.155", "0.43", "0.705"},
+                                             {"0.16", "0.435", "0.71"},
+                                             {"0.167", "0.442", "0.717"}}) {
+        const Run r = run("places", "billet",
+                          std::string("grid.cells_y=18 method.shape=gimp grain.bottom.height=0.15 "
+                                      "grain.top.height=0.15 grain.bottom.y=") +
+                              bottom + " grain.billet.y=" + block + " grain.top.y=" + top);
+        check_results(r, 4);
+        check_theorem(r);
+        CHECK(r.value("layers_beside_plates") <= 0.002);
+    }
+}
+
 TEST_CASE("contact settles with much friction in long steps" * doctest::description("physics")) {
     // Where a pair may change only a few times, some pull or rub too much here.
     for (const char* change : {"contact.friction=0.8 time.alpha=30", "contact.friction=0.3"}) {

@@ -133,6 +133,52 @@ double rounded(double x) { return std::round(64 * x) / 64; }
 
 // ---- shape functions ----------------------------------------------------------------------------
 
+TEST_CASE("particles with sides of their own tile a block wherever lines cut it") {
+    // low and high ends, in cells; slivers below a quarter of a particle in one direction at a time
+    for (const auto& [x_low, x_high, y_low, y_high] : {std::array{7.0, 12.0, 5.0, 9.0},
+                                                       {7.2, 12.3, 5.15, 9.4},
+                                                       {7.35, 12.0, 5.0, 9.05},
+                                                       {7.0, 12.0, 5.05, 9.1},
+                                                       {7.45, 12.0, 5.0, 9.0}})
+        for (const long per_side : {2L, 3L}) {
+            Case c = case_on(32, 24, 1.6);
+            c.problem.per_side = per_side, c.shape = "gimp";
+            const double h = c.problem.mesh().h;
+            GrainCase block;
+            block.name = "block", block.shape = "box";
+            block.x = 0.5 * h * (x_low + x_high), block.width = h * (x_high - x_low);
+            block.y = 0.5 * h * (y_low + y_high), block.height = h * (y_high - y_low);
+            c.problem.grains = {block};
+            const Assembly all = assemble(c.problem, true);
+            const Particles& p = all.particles;
+            std::array<long, 40> origin{};
+            for (long j = 0; j < 40; ++j) origin[std::size_t(j)] = 100 * j;
+            std::map<long, std::array<double, 3>> sums;
+            for (std::size_t k = 0; k < p.x_p.size(); ++k)
+                for_each_node(own_shape(GimpShape{0.5 / real(per_side)}, p, k),
+                              Locator(c.problem.mesh()), origin.data(), p.x_p[k], p.y_p[k],
+                              [&](long dof, double S, double Gx, double Gy) {
+                                  std::array<double, 3>& sum = sums[dof];
+                                  sum[0] += p.V_p[k] * S, sum[1] += p.V_p[k] * Gx;
+                                  sum[2] += p.V_p[k] * Gy;
+                              });
+            double off = 0;
+            for (const auto& [dof, sum] : sums) {
+                const double i = real(dof % 100), j = real(dof / 100);
+                const double in_x = integral_of_hat(x_high - i) - integral_of_hat(x_low - i),
+                             in_y = integral_of_hat(y_high - j) - integral_of_hat(y_low - j),
+                             on_x = hat(x_high - i) - hat(x_low - i),
+                             on_y = hat(y_high - j) - hat(y_low - j);
+                off = worst({off, std::fabs(sum[0] / (h * h) - in_x * in_y),
+                             std::fabs(sum[1] / h - on_x * in_y),
+                             std::fabs(sum[2] / h - in_x * on_y)});
+            }
+            CHECK(off <= 1e-9);
+            const bool cut = x_low != 7 || x_high != 12 || y_low != 5 || y_high != 9;
+            CHECK(p.half_x_p.empty() == !cut);
+        }
+}
+
 TEST_CASE("weights sum to one and reproduce the place of the particle everywhere") {
     for_each_shape([&](const auto& shape, const std::string& name) {
         CAPTURE(name);

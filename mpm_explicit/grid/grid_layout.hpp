@@ -88,8 +88,10 @@ inline void GrainNodes::sort(const std::vector<Grain>& grains, Particles& partic
     particles.surface.follow(scratch_.target);
     if (!particles.turn_p.empty())
         common::carry_to_place(particles.turn_p, scratch_.target, scratch_.column);
-    for (std::vector<double>* quantity : particles.from())
-        if (!quantity->empty()) common::carry_to_place(*quantity, scratch_.target, scratch_.column);
+    for (const auto& some : {particles.from(), particles.half_sides()})
+        for (std::vector<double>* quantity : some)
+            if (!quantity->empty())
+                common::carry_to_place(*quantity, scratch_.target, scratch_.column);
     if (particles.has_affine())
         for (std::vector<double>* quantity : particles.affine())
             common::carry_to_place(*quantity, scratch_.target, scratch_.column);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mpm_explicit/grid/mesh.hpp"
+#include "mpm_explicit/particles.hpp"
 #include "mpm_explicit/shapes.hpp"
 
 namespace mpm {
@@ -25,14 +26,35 @@ template <class Weights, class Work>
     }
 }
 
+/// The shape functions of one particle along x and y.
+template <class Shape>
+struct OwnShape {
+    Shape x, y;
+};
+/// Those of particle p: gimp averages over the rectangle that it stands for, where particles have sides.
+/// exact:  sum_p V_p grad S_ip is the integral over the grain where these tile it, cut or not
+template <class Shape>
+OwnShape<Shape> own_shape(const Shape& shape, const Particles& particles, std::size_t p) {
+    if constexpr (Shape::has_sides)
+        if (!particles.half_x_p.empty()) return {{particles.half_x_p[p]}, {particles.half_y_p[p]}};
+    return {shape, shape};
+}
+
 /// Calls work(dof, S_ip, dS_ip/dx, dS_ip/dy) for the nodes around a particle of one grain.
-/// in: origin, GrainNodes::origins of the grain
+/// in: own, its shape functions; origin, GrainNodes::origins of the grain
+template <class Shape, class Work>
+[[gnu::always_inline]] inline void for_each_node(const OwnShape<Shape>& own, const Locator& at,
+                                                 const long* origin, double x, double y,
+                                                 const Work& work) {
+    for_each_product(own.x((x - at.x_low) * at.per_h, at.per_h),
+                     own.y((y - at.y_low) * at.per_h, at.per_h), origin, work);
+}
+/// The same with one shape for all.
 template <class Shape, class Work>
 [[gnu::always_inline]] inline void for_each_node(const Shape& shape, const Locator& at,
                                                  const long* origin, double x, double y,
                                                  const Work& work) {
-    for_each_product(shape((x - at.x_low) * at.per_h, at.per_h),
-                     shape((y - at.y_low) * at.per_h, at.per_h), origin, work);
+    for_each_node(OwnShape<Shape>{shape, shape}, at, origin, x, y, work);
 }
 
 /// The weights of up to `size` particles in one direction. They are found before the first of them is
@@ -42,11 +64,13 @@ class BatchWeights {
    public:
     static constexpr long size = 128;
 
-    void find(const Shape& shape, const double* x, double low, double per_h, long count) {
+    /// in: shape(k), that of the k-th of them
+    template <class ShapeOf>
+    void find(const ShapeOf& shape, const double* x, double low, double per_h, long count) {
         per_h_ = per_h;
 #pragma omp simd
         for (long k = 0; k < count; ++k) {
-            const auto w = shape((x[k] - low) * per_h, per_h);
+            const auto w = shape(k)((x[k] - low) * per_h, per_h);
             first_[k] = w.first;
 #pragma GCC unroll 3
             for (int a = 0; a < Shape::width; ++a) S_[a][k] = w.S[a], G_[a][k] = w.G[a];
@@ -70,11 +94,21 @@ class Places {
    public:
     static constexpr long size = BatchWeights<Shape>::size;
 
-    /// in: x_p, y_p of count particles
-    void find(const Shape& shape, const Locator& at, const double* x_p, const double* y_p,
+    /// in: begin, the first of count particles
+    void find(const Shape& shape, const Locator& at, const Particles& particles, long begin,
               long count) {
-        x_.find(shape, x_p, at.x_low, at.per_h, count);
-        y_.find(shape, y_p, at.y_low, at.per_h, count);
+        const double *x_p = particles.x_p.data() + begin, *y_p = particles.y_p.data() + begin;
+        if constexpr (Shape::has_sides)
+            if (!particles.half_x_p.empty()) {
+                const double *half_x = particles.half_x_p.data() + begin,
+                             *half_y = particles.half_y_p.data() + begin;
+                x_.find([=](long k) { return Shape{half_x[k]}; }, x_p, at.x_low, at.per_h, count);
+                y_.find([=](long k) { return Shape{half_y[k]}; }, y_p, at.y_low, at.per_h, count);
+                return;
+            }
+        const auto all_alike = [shape](long) { return shape; };
+        x_.find(all_alike, x_p, at.x_low, at.per_h, count);
+        y_.find(all_alike, y_p, at.y_low, at.per_h, count);
     }
     /// Calls work(dof, S_ip, dS_ip/dx, dS_ip/dy) for the nodes around the k-th of them.
     /// in: origin, GrainNodes::origins of the grain

@@ -53,6 +53,7 @@ inline void add_particles(const PlannedGrain& plan, const Stretch& stretch, cons
                                  from.spin * (at.y - plan.outline.y));
         particles.vy_p.push_back(from.velocity_y + from.spin * (at.x - plan.outline.x));
         particles.V_p.push_back(at.volume);
+        particles.half_x_p.push_back(at.half_x), particles.half_y_p.push_back(at.half_y);
         particles.m_p.push_back(material.density * at.volume);
     }
     particles.resize(particles.x_p.size());
@@ -138,8 +139,9 @@ inline std::vector<Bond> bonds_of(const Problem& w, const std::vector<PlannedGra
 }
 
 /// Fills the grains with particles.
+/// in:     sided: particles have sides of their own, where outlines cut some
 /// errors: InputError for a grain that does not fit on the mesh
-inline Assembly assemble(const Problem& w) {
+inline Assembly assemble(const Problem& w, bool sided = false) {
     const std::vector<Material> materials = materials_of(w);
     const std::vector<PlannedGrain> plans = plan_grains(w, materials);
     const Stretch stretch = profile_bounds(plans);
@@ -168,6 +170,12 @@ inline Assembly assemble(const Problem& w) {
         motion.mass = material.density * area(plan.outline);
         all.rigid.push_back(motion);
     }
+    const double half = 0.5 / double(w.per_side);
+    bool alike = true;
+    for (std::vector<double>* sides : all.particles.half_sides())
+        alike = alike && std::ranges::all_of(*sides, [&](double side) { return side == half; });
+    if (alike || !sided)
+        for (std::vector<double>* sides : all.particles.half_sides()) *sides = {};
     all.bonds = bonds_of(w, plans, materials);
     return all;
 }

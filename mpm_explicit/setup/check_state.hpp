@@ -118,6 +118,10 @@ inline void validate_state(const Mesh& mesh, int width, bool affine, bool turns,
                "its particles carry affine motion, or not, against method.transfer");
     refuse(p.turn_p.size() != (turns ? count : 0) || !common::all_within(p.turn_p, -1e3, 1e3),
            "the turns of its particles are not as many as those of the case, or too large");
+    for (const std::vector<double>* sides : p.half_sides())
+        refuse((!sides->empty() && sides->size() != count) ||
+                   !common::all_within(*sides, 1e-3, 0.5) || sides->size() != p.half_x_p.size(),
+               "the sides of its particles are not as many as those of the case, or too large");
     const Surface& surface = p.surface;
     bool fits = common::all_within(surface.host, 0, static_cast<int>(count) - 1) &&
                 std::is_sorted(surface.host.begin(), surface.host.end()) &&

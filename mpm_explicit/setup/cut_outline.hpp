@@ -17,13 +17,27 @@
 
 namespace mpm {
 
-/// A part of a grain: its area and first moments, area times centroid.
+/// A part of a grain: its area, first moments, area times centroid, and the second ones along x and y.
 struct Piece {
-    double area = 0, x = 0, y = 0;
+    double area = 0, x = 0, y = 0, xx = 0, yy = 0;
 
-    void operator+=(const Piece& other) { area += other.area, x += other.x, y += other.y; }
-    Piece times(double part) const { return {part * area, part * x, part * y}; }
+    void operator+=(const Piece& other) {
+        area += other.area, x += other.x, y += other.y, xx += other.xx, yy += other.yy;
+    }
+    Piece times(double part) const {
+        return {part * area, part * x, part * y, part * xx, part * yy};
+    }
+    Piece moved(double dx, double dy) const {
+        return {area, x + area * dx, y + area * dy, xx + (2 * x + area * dx) * dx,
+                yy + (2 * y + area * dy) * dy};
+    }
     Point centroid() const { return {x / area, y / area}; }
+    /// Half the sides of the rectangle, along x and y, that spreads as far about its centroid.
+    Point half_sides() const {
+        const Point c = centroid();
+        return {std::sqrt(std::max(0.0, 3 * (xx / area - c.x * c.x))),
+                std::sqrt(std::max(0.0, 3 * (yy / area - c.y * c.y)))};
+    }
 };
 
 namespace detail {
@@ -31,16 +45,19 @@ namespace detail {
 // The triangle of the origin, a and b.
 inline Piece triangle(const Point& a, const Point& b) {
     const double area = 0.5 * (a.x * b.y - a.y * b.x);
-    return {area, area * (a.x + b.x) / 3, area * (a.y + b.y) / 3};
+    return {area, area * (a.x + b.x) / 3, area * (a.y + b.y) / 3,
+            area * (a.x * a.x + a.x * b.x + b.x * b.x) / 6,
+            area * (a.y * a.y + a.y * b.y + b.y * b.y) / 6};
 }
 
 // The sector of a disk about the origin between the directions of a and b.
 inline Piece sector(const Point& a, const Point& b, double radius) {
     const double per_a = 1 / std::hypot(a.x, a.y), per_b = 1 / std::hypot(b.x, b.y),
                  angle = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y),
-                 third = radius * radius * radius / 3;
+                 third = radius * radius * radius / 3, eighth = 0.375 * third * radius,
+                 turn = b.x * b.y * per_b * per_b - a.x * a.y * per_a * per_a;
     return {0.5 * radius * radius * angle, third * (b.y * per_b - a.y * per_a),
-            third * (a.x * per_a - b.x * per_b)};
+            third * (a.x * per_a - b.x * per_b), eighth * (angle + turn), eighth * (angle - turn)};
 }
 
 // The part of a disk about the origin in the triangle of the origin, a and b: a triangle where the
@@ -80,18 +97,18 @@ inline std::vector<Point> cut(const std::vector<Point>& corners, double Point::*
 }  // namespace detail
 
 /// The part of a disk in the square of side 1 with the lower left corner (x, y).
-/// exact:  area and centroid, to round-off
+/// exact:  area and moments, to round-off
 inline Piece piece_of_disk(const Point& center, double radius, double x, double y) {
     const double u = x - center.x, v = y - center.y;
     const Point corners[4]{{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}};
     Piece piece;
     for (int k = 0; k < 4; ++k) piece += detail::in_disk(corners[k], corners[(k + 1) % 4], radius);
-    return {piece.area, piece.x + piece.area * center.x, piece.y + piece.area * center.y};
+    return piece.moved(center.x, center.y);
 }
 
 /// The part of a polygon between x and x + 1.
 /// in:     corners of what is left of it between y and y + 1
-/// exact:  area and centroid, to round-off, of a concave one as well: where it falls apart, the
+/// exact:  area and moments, to round-off, of a concave one as well: where it falls apart, the
 ///         stretches that join its parts are passed twice, there and back
 inline Piece piece_of_polygon(const std::vector<Point>& corners, double x, double y) {
     using namespace detail;
@@ -100,7 +117,7 @@ inline Piece piece_of_polygon(const std::vector<Point>& corners, double x, doubl
                   [&](const Point& a, const Point& b) {
                       piece += triangle({a.x - x, a.y - y}, {b.x - x, b.y - y});
                   });
-    return {piece.area, piece.x + piece.area * x, piece.y + piece.area * y};
+    return piece.moved(x, y);
 }
 
 /// A part of an outline within one square: its area vector, its middle, and the side it is on.

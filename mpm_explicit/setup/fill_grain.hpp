@@ -15,6 +15,7 @@ namespace mpm {
 /// A particle of a grain at the start: its place, and what of the grain it stands for.
 struct FilledPlace {
     double x = 0, y = 0, volume = 0;
+    double half_x = 0, half_y = 0;     // half the sides of as wide a rectangle, in cells
     std::vector<OutlinePart> surface;  // the outline around it; middles from the particle
 };
 
@@ -33,6 +34,7 @@ class Pieces {
           rows_(whole(box.y_high) - first_j_ + 1),
           pieces_(static_cast<std::size_t>(columns_ * rows_)) {
         std::vector<Point> row;
+        const Piece full{1, 0, 0, 1.0 / 12, 1.0 / 12};
         for (long j = first_j_; j < first_j_ + rows_; ++j) {
             const auto y = double(j);
             if (outline.kind == OutlineKind::polygon)
@@ -43,7 +45,7 @@ class Pieces {
                     outline.kind == OutlineKind::polygon
                         ? piece_of_polygon(row, x, y)
                         : piece_of_disk({outline.x, outline.y}, outline.radius, x, y);
-                at(i, j) = piece.area > 1 - nothing ? Piece{1, x + 0.5, y + 0.5}
+                at(i, j) = piece.area > 1 - nothing ? full.moved(x + 0.5, y + 0.5)
                            : piece.area > nothing   ? piece
                                                     : Piece{};
             }
@@ -199,7 +201,14 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
     pieces.for_each([&](const Piece& piece, const std::vector<OutlinePart>& surface) {
         Point p = piece.centroid();
         if (round && piece.area != 1) p = from_center(farther, p.x, p.y);
-        FilledPlace particle{0, 0, piece.area * (spacing * spacing), {}};
+        FilledPlace particle{0, 0, piece.area * (spacing * spacing), 0, 0, {}};
+        const Point half = round ? Point{0.5, 0.5} : piece.half_sides();
+        const auto in_cells = [&](double side) {
+            // Round-off makes no side of a square another one.
+            const double exact = std::fabs(side - 0.5) < 1e-6 ? 0.5 : side;
+            return std::clamp(exact / double(per_side), 1e-3, 0.5);
+        };
+        particle.half_x = in_cells(half.x), particle.half_y = in_cells(half.y);
         for (const OutlinePart& part : surface) {
             const Point at = round ? from_center(outward, part.x, part.y) : Point{part.x, part.y};
             particle.surface.push_back({spacing * part.area_x, spacing * part.area_y,

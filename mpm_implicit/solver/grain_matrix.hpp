@@ -50,8 +50,9 @@ class GrainMatrix {
             const long* origin = nodes.origins(tile.grain);
             for (long k = tile.begin; k < tile.end; ++k) {
                 const auto p = static_cast<std::size_t>(k);
-                add_particle(shape((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
-                             shape((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
+                const OwnShape<Shape> own = own_shape(shape, particles, p);
+                add_particle(own.x((particles.x_p[p] - at.x_low) * at.per_h, at.per_h),
+                             own.y((particles.y_p[p] - at.y_low) * at.per_h, at.per_h), origin,
                              law.T.lambda, law.T.G, factor_K * particles.V_p[p],
                              particles.turn_p[p], particles.m_p[p]);
             }

@@ -42,7 +42,7 @@ struct ThetaRun {
           scheme(s),
           scales(scales_of(c, false)),
           dt(scales.dt),
-          state{assemble(c.problem), {}, {}, {}, {}},
+          state{assemble(c.problem, c.shape == "gimp"), {}, {}, {}, {}},
           laws(laws_of(c.problem)),
           contact(contact_rule(c.problem), state.assembly.grains, state.assembly.bonds),
           nodes(c.problem.mesh(), c.scheme().width(), scales.least_mass) {
