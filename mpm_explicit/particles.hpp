@@ -76,7 +76,8 @@ struct Particles {
     // [length]; or empty.
     std::vector<double> from_x_p, from_y_p;
 
-    // Of mpm_implicit with gimp: half its sides, in cells, where outlines cut some; or empty.
+    // Of mpm_implicit with gimp: half its sides along x and y at the start, in cells, where upright boxes
+    // cut some; or empty.
     std::vector<double> half_x_p, half_y_p;
 
     Surface surface;  // empty: contact goes by the particles themselves

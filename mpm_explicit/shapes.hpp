@@ -1,7 +1,7 @@
 // Shape functions S_ip = S(x_p - x_i) and their gradients, one direction at a time.
 //
 //   linear     the talk's: area weighting, two nodes per direction, gradient constant in the cell
-//   gimp       linear, averaged over the particle's own square (uGIMP): the gradient is continuous
+//   gimp       linear, averaged over the particle's own square or rectangle (uGIMP): the gradient is continuous
 //   quadratic  the B-spline S^(2): three nodes per direction
 //
 // In two dimensions S_ip = S(x) S(y) and grad S_ip = (S'(x) S(y), S(x) S'(y)).
@@ -24,7 +24,7 @@ struct Weights {
 /// x_p in cells from node 0; per_h = 1/h.
 struct LinearShape {
     static constexpr int width = 2;
-    static constexpr bool has_sides = false;  // those of particles
+    static constexpr bool has_sides = false;  // whether particles may have their own
     static constexpr double least = 1e-15;    // weight: round-off
     Weights<2> operator()(double x, double per_h) const {
         // On a line of nodes, the node beyond is seen a little: a gradient asks for its velocity.

@@ -61,7 +61,7 @@ double explicit_step(Case w, long first, long steps) {
     const double dt = scales.dt;
     const LinearShape shape;
     mpm_explicit::State state;
-    state.assembly = assemble(w.problem, w.shape == "gimp");
+    state.assembly = assemble(w.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     const std::vector<AnyLaw> laws = laws_of(w.problem);
@@ -94,7 +94,7 @@ Split implicit_steps(const Case& w, const mpm_implicit::ThetaScheme& scheme, lon
     const double dt = scales.dt;
     const LinearShape shape;
     mpm_implicit::State state;
-    state.assembly = assemble(w.problem, w.shape == "gimp");
+    state.assembly = assemble(w.problem);
     Particles& particles = state.assembly.particles;
     const std::vector<Grain>& grains = state.assembly.grains;
     const std::vector<AnyLaw> laws = laws_of(w.problem);

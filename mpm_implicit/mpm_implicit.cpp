@@ -29,7 +29,7 @@ int run_case(const Shape& shape, const Case& parameters, const ThetaScheme& sche
              const Scales& scales, common::Run& run) {
     // 2. Particles at t = 0.
     State state;
-    Assembly& all = state.assembly = assemble(parameters.problem, parameters.shape == "gimp");
+    Assembly& all = state.assembly = assemble(parameters.problem, Shape::has_sides);
     const double dt = scales.dt;
     const Contact contact(contact_rule(parameters.problem, dt), all.grains, all.bonds);
     GrainNodes nodes(parameters.problem.mesh(), Shape::width, scales.least_mass);

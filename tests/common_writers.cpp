@@ -360,7 +360,7 @@ TEST_CASE("an error bar enters the verdict and an expected failure is none") {
     };
     CHECK(says("FAIL far = 1.25 +- 0.06, and 1 +- 0.1 is expected (exact); lower time.dt"));
     CHECK(says("as expected, off = 3 and not 1 +- 0.1: the step is too long"));
-    CHECK(says("expect.fails names 'misspelled', and this run has no such result"));
+    CHECK(says("expect.fails names 'misspelled', and this run judges no such result"));
     CHECK(says("expect.fails names 'fine', and it passed"));
     CHECK(numbers.fell_short());
 }
@@ -394,7 +394,7 @@ TEST_CASE("a failure of another size than the case shows is a failure") {
           "as expected, low = -0.3 and not >= 1: so it is",
           "FAIL far = 4.5, and 1 +- 0.1 is expected", "FAIL odd = 3", "FAIL lost = nan",
           "expect.fails names 'far from 2 to 4', and it fails with another value",
-          "expect.fails names 'odd from 2 to 4 m', and this run has no such result"}) {
+          "expect.fails names 'odd from 2 to 4 m', and this run judges no such result"}) {
         CAPTURE(words);
         CHECK(says(words));
     }

@@ -232,6 +232,20 @@ TEST_CASE("the pressure between two strong fans is judged by its own size") {
     CHECK(run.value("star_pressure") == facts::about(star));
 }
 
+TEST_CASE("the pressure between two weak waves is judged by what they change") {
+    // The waves of half a per cent: off by the part of that which the tolerance is, and by ten times as much.
+    const Tube weak{"weak", {1, 0, 1, 1.4}, {0.99, 0, 0.99, 1.4}, 0.5, 0.2};
+    const theory::RiemannSolution s = theory::solve_riemann(weak.left, weak.right);
+    for (const double wrong : {0.1, 2.0}) {
+        const auto run = tube_of(weak, 200, [&](long n, std::size_t, double x, CellFields& c) {
+            const double xi = (x - weak.interface) / weak.end;
+            if (xi > s.left_tail && xi < s.right_tail) c.p[n] -= 5e-3 * wrong;
+        });
+        CAPTURE(wrong);
+        CHECK((part(run, "star_pressure") <= 1) == (wrong < 1));
+    }
+}
+
 TEST_CASE("a tube whose light gas is scrambled beside a heavy one does not pass") {
     const Tube tube{"", {1000, 0, 1e9, 4.4, 6e8}, {1, 0, 1e5, 1.4}, 0.7, 120e-6};
     const theory::RiemannSolution s = theory::solve_riemann(tube.left, tube.right);

@@ -462,8 +462,8 @@ mpm_implicit billet.toml theory.compare=none method.shape=gimp -> no warning
 mpm_explicit plate_holds.toml theory.compare=none method.shape=gimp grid.cells_y=14 grain.block.y=0.315 \
     grain.bottom.y=0.04 grain.bottom.height=0.15 grain.top.y=0.59 grain.top.height=0.15
     warning: the outline of 'block' cuts particles beside plate 'bottom': with method.shape = "gimp" the
-    layer there bears up to 0.06 more or less than the others; take "linear", mpm_implicit, or a plate
-    at a multiple of 0.025
+    layer there bears up to 0.06 more or less than the others (one particle per side: more); take "linear",
+    mpm_implicit, or sides of the block at multiples of 0.025 from the corner of the mesh
 mpm_explicit plate_holds.toml theory.compare=none method.shape=gimp grid.cells_y=14 grain.block.y=0.325 \
     grain.bottom.y=0.05 grain.bottom.height=0.15 grain.top.y=0.6 grain.top.height=0.15 -> no warning
 mpm_implicit billet.toml theory.compare=none method.shape=gimp grid.cells_y=14 grain.billet.y=0.315 \

@@ -16,12 +16,7 @@
 
 namespace common {
 
-namespace {
-
-constexpr char magic[] = "PICSTAT2";
-constexpr char end_of_file[] = "end";
-
-}  // namespace
+constexpr char magic[] = "PICSTAT2", end_of_file[] = "end";
 
 CheckpointWriter::CheckpointWriter(const ProgramInfo& info, const std::string& path,
                                    const std::string& case_name, const std::string& effective_case)

@@ -1,8 +1,6 @@
 // One row per step, in columns for gnuplot: history.dat, and the same numbers in memory.
 #pragma once
 
-#include <gsl/gsl_fit.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -168,11 +166,12 @@ inline double time_at_level(const std::vector<double>& times, const std::vector<
 
 /// Slope of the straight line of least squares; 0 for fewer than two different times.
 inline double slope(std::span<const double> times, std::span<const double> values) {
-    if (times.size() < 2 || std::ranges::min(times) == std::ranges::max(times)) return 0;
-    double first, slope, errors[4];
-    gsl_fit_linear(times.data(), 1, values.data(), 1, times.size(), &first, &slope, errors,
-                   errors + 1, errors + 2, errors + 3);
-    return slope;
+    const double count = double(times.size());
+    double t = 0, y = 0, along = 0, product = 0;
+    for (std::size_t n = 0; n < times.size(); ++n) t += times[n] / count, y += values[n] / count;
+    for (std::size_t n = 0; n < times.size(); ++n)
+        along += (times[n] - t) * (times[n] - t), product += (times[n] - t) * (values[n] - y);
+    return along > 0 ? product / along : 0;
 }
 
 }  // namespace common

@@ -54,12 +54,15 @@ void attribute(hid_t parent, const char* name, const std::string& value) {
     write_attribute(parent, name, type.id, H5Screate(H5S_SCALAR), value.c_str());
 }
 void attribute(hid_t parent, const char* name, const std::vector<std::string>& values) {
-    std::vector<const char*> texts;
-    for (const std::string& one : values) texts.push_back(one.c_str());
+    // Of one length: h5py reads these as bytes, which openPMD-viewer expects.
+    std::size_t width = 1;
+    for (const std::string& one : values) width = std::max(width, one.size() + 1);
+    std::string letters;
+    for (const std::string& one : values) letters += one + std::string(width - one.size(), '\0');
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    require(H5Tset_size(type.id, H5T_VARIABLE));
+    require(H5Tset_size(type.id, width));
     const hsize_t count = values.size();
-    write_attribute(parent, name, type.id, H5Screate_simple(1, &count, nullptr), texts.data());
+    write_attribute(parent, name, type.id, H5Screate_simple(1, &count, nullptr), letters.data());
 }
 
 /// The numbers of one component, compressed and with a checksum; the dataset stays open.

@@ -80,7 +80,7 @@ void listen_to(int signal) {
     sigaction(signal, nullptr, &action);
     if (action.sa_handler == SIG_IGN) return;
     action.sa_handler = ask_to_stop;
-    action.sa_flags = SA_RESTART;
+    action.sa_flags = SA_RESTART, sigemptyset(&action.sa_mask);
     sigaction(signal, &action, nullptr);
 }
 

@@ -57,9 +57,9 @@ class Run {
         reader.finish();
         try {
             history.restore(rows);
-            if (step < 1 || step > 1000000000000) throw InputError("its step cannot be");
-            if (history.rows() != (step - 1) / schedule.history_steps + 1)
-                throw InputError("its history lacks rows, or has too many");
+            refuse(step < 1 || step > 1000000000000, "its step cannot be");
+            refuse(history.rows() != (step - 1) / schedule.history_steps + 1,
+                   "its history lacks rows, or has too many");
             validate();
         } catch (const InputError& error) {
             throw InputError(command_.restart_path + ": the checkpoint is of no run: " +

@@ -415,7 +415,7 @@ inline void judge_between_waves(const FinishedRun& run, const RiemannProfile& r)
     const double expected = wave.behind.pressure,
                  fan = wave.head == wave.tail ? 0 : wave.front.pressure - expected,
                  change = r.change_of_velocity();
-    // Of weak waves a part of what they change.
+    // Of weak waves a part of what the stronger one changes, and a thousandth of the pressure.
     double size = 1e-3 / run.parameters.theory_tolerance * std::fabs(expected);
     for (const RiemannWave& one : r.waves)
         size = std::max(size, std::fabs(expected - one.front.pressure));

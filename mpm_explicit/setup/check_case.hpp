@@ -534,7 +534,8 @@ inline void validate_explicit(const Case& parameters) {
 }
 
 /// Warns of the first block that a flat plate meets where its outline cuts particles of gimp, whose squares are
-/// alike here. As measured with plates at every tenth of a cell: up to .056 off from .2 to .4 and .6 to .9.
+/// alike here. As measured with two particles per side and plates at every tenth of a cell: up to .056 off where
+/// a tenth of a square or more is cut off.
 inline void warn_of_cut_squares(const Problem& problem, const std::vector<Material>& materials,
                                 const std::vector<PlannedGrain>& plans,
                                 std::vector<std::string>& warnings) {
@@ -564,9 +565,9 @@ inline void warn_of_cut_squares(const Problem& problem, const std::vector<Materi
                     "the outline of '" + block.name + "' cuts particles beside plate '" +
                     plate.name +
                     "': with method.shape = \"gimp\" the layer there bears up to "
-                    "0.06 more or less than the others; take \"linear\", mpm_implicit, or a "
-                    "plate at a multiple of " +
-                    format(spacing));
+                    "0.06 more or less than the others (one particle per side: more); take "
+                    "\"linear\", mpm_implicit, or sides of the block at multiples of " +
+                    format(spacing) + " from the corner of the mesh");
         }
 }
 

@@ -17,7 +17,8 @@
 
 namespace mpm {
 
-/// A part of a grain: its area, first moments, area times centroid, and the second ones along x and y.
+/// A part of a grain: its area, first moments, area times centroid, and of polygons the second ones along x
+/// and y.
 struct Piece {
     double area = 0, x = 0, y = 0, xx = 0, yy = 0;
 
@@ -54,10 +55,9 @@ inline Piece triangle(const Point& a, const Point& b) {
 inline Piece sector(const Point& a, const Point& b, double radius) {
     const double per_a = 1 / std::hypot(a.x, a.y), per_b = 1 / std::hypot(b.x, b.y),
                  angle = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y),
-                 third = radius * radius * radius / 3, eighth = 0.375 * third * radius,
-                 turn = b.x * b.y * per_b * per_b - a.x * a.y * per_a * per_a;
+                 third = radius * radius * radius / 3;
     return {0.5 * radius * radius * angle, third * (b.y * per_b - a.y * per_a),
-            third * (a.x * per_a - b.x * per_b), eighth * (angle + turn), eighth * (angle - turn)};
+            third * (a.x * per_a - b.x * per_b)};
 }
 
 // The part of a disk about the origin in the triangle of the origin, a and b: a triangle where the
@@ -97,13 +97,13 @@ inline std::vector<Point> cut(const std::vector<Point>& corners, double Point::*
 }  // namespace detail
 
 /// The part of a disk in the square of side 1 with the lower left corner (x, y).
-/// exact:  area and moments, to round-off
+/// exact:  area and centroid, to round-off
 inline Piece piece_of_disk(const Point& center, double radius, double x, double y) {
     const double u = x - center.x, v = y - center.y;
     const Point corners[4]{{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}};
     Piece piece;
     for (int k = 0; k < 4; ++k) piece += detail::in_disk(corners[k], corners[(k + 1) % 4], radius);
-    return piece.moved(center.x, center.y);
+    return {piece.area, piece.x + piece.area * center.x, piece.y + piece.area * center.y};
 }
 
 /// The part of a polygon between x and x + 1.

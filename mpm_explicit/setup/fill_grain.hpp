@@ -15,7 +15,7 @@ namespace mpm {
 /// A particle of a grain at the start: its place, and what of the grain it stands for.
 struct FilledPlace {
     double x = 0, y = 0, volume = 0;
-    double half_x = 0, half_y = 0;     // half the sides of as wide a rectangle, in cells
+    double half_x = 0, half_y = 0;     // half its sides, in cells
     std::vector<OutlinePart> surface;  // the outline around it; middles from the particle
 };
 
@@ -153,7 +153,9 @@ class Pieces {
 /// note:   Points have no moment of inertia of their own: those at the surface of a disk stand farther
 ///         out, by some hundredths of the spacing, to make up for it. So do the parts of its outline, by
 ///         h^2/12R, as nodes see their mean over a cell. Places are rounded to 1e-9 of
-///         the spacing, so that those that are equal on paper are equal here.
+///         the spacing, so that those that are equal on paper are equal here. Sides are those of the
+///         pieces in upright boxes, at most a cell, and else those of the squares: thin pieces of oblique cuts
+///         bear stress of the wrong sign with theta = 1/2 when they are as narrow.
 inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, long per_side) {
     const double spacing = mesh.h / double(per_side);
     const Bounds box = bounds(outline);
@@ -181,7 +183,7 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
     for (Point& p : on_lattice.corners) p = lattice(p.x, p.y);
     const detail::Pieces pieces(on_lattice, bounds(on_lattice), per_side);
 
-    const bool round = outline.kind == OutlineKind::disk;
+    const bool round = outline.kind == OutlineKind::disk, upright = is_upright_box(outline);
     double whole = 0, parts = 0, area = 0;  // sums of area, and of area times distance squared
     const auto away = [&](const Point& p) {
         return (p.x - center.x) * (p.x - center.x) + (p.y - center.y) * (p.y - center.y);
@@ -202,10 +204,10 @@ inline std::vector<FilledPlace> fill(const Outline& outline, const Mesh& mesh, l
         Point p = piece.centroid();
         if (round && piece.area != 1) p = from_center(farther, p.x, p.y);
         FilledPlace particle{0, 0, piece.area * (spacing * spacing), 0, 0, {}};
-        const Point half = round ? Point{0.5, 0.5} : piece.half_sides();
+        const Point half = upright ? piece.half_sides() : Point{0.5, 0.5};
         const auto in_cells = [&](double side) {
             // Round-off makes no side of a square another one.
-            const double exact = std::fabs(side - 0.5) < 1e-6 ? 0.5 : side;
+            const double exact = std::fabs(side - 0.5) < 1e-4 ? 0.5 : side;
             return std::clamp(exact / double(per_side), 1e-3, 0.5);
         };
         particle.half_x = in_cells(half.x), particle.half_y = in_cells(half.y);

@@ -128,7 +128,8 @@ inline Scales scales_of(const Case& parameters, bool is_explicit = true) {
                                     std::pow(double(parameters.pixels_per_cell), 2)
                               : 0;
     const long carried = ((parameters.transfers().kind == Transfer::none ? 12 : 16) +
-                          (parameters.transfers().crossing > 0 ? 2 : 0)) *
+                          (parameters.transfers().crossing > 0 ? 2 : 0) +
+                          (parameters.shape == "gimp" && !is_explicit ? 2 : 0)) *
                          (is_explicit ? 2 : 1);
     s.bytes = particles * double(carried * sizeof(double) + 2 * sizeof(int)) +
               s.nodes * (sizeof(NodeSums) + sizeof(NodeMotion) + sizeof(NodeForce) +

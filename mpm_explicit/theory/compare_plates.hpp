@@ -126,22 +126,27 @@ inline void need_billet(const PlannedCase& planned) {
                    " knows no limit for a block that cannot widen: make it narrower than the mesh");
 }
 
-/// The mean stress along y of each layer of particles, from below, at the end.
+/// The mean stress along y of each layer of particles, from below, at the end: the rows of the lattice that they
+/// came from, pressed as the block is. An end that is below a quarter of a row is of the next one.
 inline std::vector<double> stress_of_layers(const FinishedRun& run, const Press& press) {
     const PlannedCase& planned = run.planned;
     const Grain& block = run.grain();
     const Particles& at = run.all.particles;
-    const double rows = std::round(press.height / run.parameters.problem.mesh().h *
-                                   double(run.parameters.problem.per_side));
-    double low = bounds(planned.plans[planned.target()].outline).y_low;
+    const Mesh mesh = run.parameters.problem.mesh();
+    const Bounds box = bounds(planned.plans[planned.target()].outline);
+    const double per_row = double(run.parameters.problem.per_side) / mesh.h,
+                 bottom = (box.y_low - mesh.y_low) * per_row, first = std::floor(bottom + 0.25),
+                 rows = std::ceil((box.y_high - mesh.y_low) * per_row - 0.25) - first;
+    double low = box.y_low;
     for (const PlannedGrain& plan : planned.plans)
         if (planned.is_rigid(plan) && plan.outline.y < low)
             low += run.history.column("travel_y_" + plan.name).back();
-    const double layer = press.height * (1 - press.strain.back()) / rows;
+    const double stretch = 1 - press.strain.back();
     std::vector<double> sum(std::size_t(rows), 0.0), volume = sum;
     for (long k = block.begin; k < block.end; ++k) {
         const auto p = std::size_t(k);
-        const auto n = std::size_t(std::clamp((at.y_p[p] - low) / layer, 0.0, rows - 1));
+        const double row = bottom + (at.y_p[p] - low) * per_row / stretch - first;
+        const auto n = std::size_t(std::clamp(row, 0.0, rows - 1));
         sum[n] += at.V_p[p] * at.syy_p[p], volume[n] += at.V_p[p];
     }
     for (std::size_t n = 0; n < sum.size(); ++n)
