@@ -626,20 +626,33 @@ Eigen::Vector3d kept_components(const Case& w) {
     return {double(free_x), 1, double(free_z)};
 }
 
-Eigen::Vector3d common_drift(const Case& w) {
-    // In units of n0: of the drifts together, and of all that moves.
-    Eigen::Vector3d drift = Eigen::Vector3d::Zero();
-    double all = 0, charge = 0, charges = 0;
+bool charges_cancel(const Case& w) {
+    double charge = 0, charges = 0;
+    for (const SpeciesCase& s : w.uniform.species)
+        charge += s.density * s.charge, charges += s.density * std::fabs(s.charge);
+    return std::fabs(charge) <= 1e-9 * charges;
+}
+
+CommonDrift common_drift(const Case& w) {
+    // In units of n0: of the drifts together, of each, and of heat.
+    CommonDrift all;
+    double drifts = 0, heat = 0, noise = 0;
     for (const SpeciesCase& s : w.uniform.species) {
         const Eigen::Vector3d each(s.drift_x, s.drift_y, s.drift_z);
-        const double T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
-        drift += s.density * s.mass * each;
-        all += s.density * s.mass * (each.norm() + std::sqrt(T / s.mass));
-        charge += s.density * s.charge, charges += s.density * std::fabs(s.charge);
+        const double mass = s.density * s.mass,
+                     T = std::max({s.temperature_x, s.temperature_y, s.temperature_z});
+        all.momentum += mass * each, drifts += mass * each.norm();
+        heat += mass * std::sqrt(T / s.mass), noise += mass * s.density * T;
     }
-    drift = drift.cwiseProduct(kept_components(w));
-    const bool counts = drift.norm() > 0.3 * all && std::fabs(charge) <= 1e-9 * charges;
-    return counts ? drift : Eigen::Vector3d(0, 0, 0);
+    const double cells = double(w.grid.x.cells) * double(w.grid.z.cells),
+                 particles = cells * double(w.uniform.particles_per_cell);
+    all.momentum = all.momentum.cwiseProduct(kept_components(w));
+    all.noise = std::sqrt(noise / particles);
+    const double size = all.momentum.norm();
+    all.is_fast = size > 0.3 * (drifts + heat);
+    all.counts = charges_cancel(w) && size > 0 &&
+                 (all.is_fast || (size > 0.3 * drifts && size > 10 * all.noise));
+    return all;
 }
 
 double debye_cells(const Case& w) {
@@ -653,18 +666,32 @@ double debye_cells(const Case& w) {
 }
 
 std::string mesh_brakes(const Case& w) {
-    const std::string brakes = "the mesh brakes the drift, for the Debye length is " +
-                               format(debye_cells(w)) + " cells: ",
-                      refine = "refine the mesh until it is 1";
+    const std::string brakes =
+        "the mesh brakes the drift, for the Debye length is " + format(debye_cells(w)) + " cells: ";
     if (w.leapfrog.chosen)
         return brakes + (w.leapfrog.order == 1 || w.field.smoothing.passes < 4
                              ? "set particles.order = 2 and field.smoothing_passes = 4"
-                             : refine);
+                             : "refine the mesh until it is 1");
+    const UniformCase& u = w.uniform;
+    const bool matrix = w.field.uses_mass_matrix(),
+               in_field = u.B_x != 0 || u.B_y != 0 || u.B_z != 0,
+               walls = !w.grid.x.periodic || !w.grid.z.periodic,
+               behind = w.field.smoothing.passes > 0 &&
+                        (w.boundary_x == "reflecting" || w.boundary_z == "reflecting");
+    if (in_field && walls && (behind || !matrix))
+        return (matrix ? std::string()
+                       : "what moments predict beside walls takes momentum across B: set "
+                         "field.response = \"mass_matrix\"" +
+                             std::string(behind ? "; and " : "")) +
+               (behind ? "smoothing mixes in what is behind walls that reflect: set "
+                         "field.smoothing_passes = 0"
+                       : "");
     return brakes +
-           (w.field.rotates_in_the_middle()
-                ? ""
-                : "take B in the middle of the step, field.B_level = \"middle\", or ") +
-           refine +
+           (!w.field.rotates_in_the_middle() && (matrix || !in_field)
+                ? "take B in the middle of the step, field.B_level = \"middle\""
+            : !in_field ? "lower time.dt"
+            : matrix    ? "set field.response = \"moments\", and refine the mesh"
+                        : "refine the mesh") +
            (drifts_near_c(w) ? "; and light that the mesh slows down takes from particles near c "
                                "(numerical Cherenkov): raise field.smoothing_passes"
                              : "");

@@ -43,9 +43,17 @@ void refuse_wave(const Case& w);
 /// all, for E_t = 0 and B_n = 0 on a conductor leave no stress E_n E_t + B_n B_t there; none where B crosses a wall.
 Eigen::Vector3d kept_components(const Case& w);
 
-/// Momentum per area of a uniform plasma that drifts as a whole, by kept_components() [m_i c n0].
-/// out: 0 where the drifts together are less than a third of all that moves, or charges do not cancel
-Eigen::Vector3d common_drift(const Case& w);
+/// Whether the charges of species cancel, so that none is fixed.
+bool charges_cancel(const Case& w);
+
+/// What species that drift have together, per area [m_i c n0].
+struct CommonDrift {
+    Eigen::Vector3d momentum = {0, 0, 0};  // by kept_components()
+    double noise = 0;                      // that heat gives so many particles, by chance
+    bool counts = false;   // charges cancel, and it is above drifts that do, and noise
+    bool is_fast = false;  // above a third of all that moves
+};
+CommonDrift common_drift(const Case& w);
 
 /// The shortest Debye length of what has a charge, in cells.
 double debye_cells(const Case& w);

@@ -71,9 +71,9 @@ inline std::vector<std::string> leapfrog_warnings(const Case& w, const Scales& s
         warn_of_cherenkov(of, "x", of.drift_x, w.grid.x.spacing());
         warn_of_cherenkov(of, "z", of.drift_z, w.grid.z.spacing());
     }
-    const Eigen::Vector3d drift = w.is_uniform() ? common_drift(w) : Eigen::Vector3d(0, 0, 0);
-    const bool drifts = std::hypot(drift[0], drift[2]) > 0, wide = w.leapfrog.order == 2,
-               smooth = w.field.smoothing.passes >= 4;
+    const CommonDrift drift = w.is_uniform() ? common_drift(w) : CommonDrift{};
+    const bool drifts = drift.counts && std::hypot(drift.momentum[0], drift.momentum[2]) > 0,
+               wide = w.leapfrog.order == 2, smooth = w.field.smoothing.passes >= 4;
     const double debye = drifts ? debye_cells(w) : HUGE_VAL, least = wide || smooth ? 0.2 : 0.6;
     warn(warnings, debye < least && !(wide && smooth), "the Debye length is ", debye,
          " cells, below ", least,
