@@ -1213,6 +1213,8 @@ plasmas magnetized species.electrons.charge=-1 uniform.B_z=1e-9 species.electron
     theory.wave = "magnetized" sums over the harmonics of the gyration, and k times its radius is
 plasmas magnetized species.electrons.charge=-1 uniform.B_z=0.1 grid.cells_x=64 grid.cells_z=64
     theory.wave = "magnetized" needs theory.near: without temperatures and drifts this plasma has
+plasmas magnetized species.electrons.charge=-1 uniform.B_y=1 theory.near=1.03 theory.component=E_x species.electrons.temperature_x=1e-3 species.electrons.temperature_y=1e-3 species.electrons.temperature_z=1e-3
+    , which has no E_x: choose E_y for theory.component, or change theory.near
 implicit_moment magnetized species.electrons.charge=-1 uniform.B_x=0.1 particles.relativistic=true species.electrons.drift_x=0.3
     species 'electrons' drifts with u = 0.3 c: with uniform.B theory.wave = "magnetized" takes drifts below
 plasmas transverse species.electrons.charge=-1 uniform.mode_z=1 species.electrons.temperature_z=0.1

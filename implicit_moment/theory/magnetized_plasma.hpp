@@ -101,15 +101,37 @@ inline Eigen::Matrix3cd vacuum_waves(const Eigen::Vector3d& k, double speed_of_l
     return speed_of_light * speed_of_light * curl + omega * omega * Eigen::Matrix3cd::Identity();
 }
 
-/// D(omega) = det[ c^2 (k k - k^2) + omega^2 (1 + chi) ].
+/// The matrix c^2 (k k - k^2) + omega^2 (1 + chi), in the frame of the field.
+inline Eigen::Matrix3cd magnetized_waves(const std::vector<MagnetizedSpecies>& plasma,
+                                         MagnetizedWave k, double speed_of_light,
+                                         std::complex<double> omega) {
+    return vacuum_waves(Eigen::Vector3d(k.across, 0, k.along), speed_of_light, omega) +
+           magnetized_response(plasma, k, omega);
+}
+
+/// D(omega), its determinant.
 /// exact:  k along B: the product of longitudinal_dispersion() and both transverse_dispersion()s;
 ///         cold: zero at the eigenvalues of cold_rates()
 inline std::complex<double> magnetized_dispersion(const std::vector<MagnetizedSpecies>& plasma,
                                                   MagnetizedWave k, double speed_of_light,
                                                   std::complex<double> omega) {
-    return (vacuum_waves(Eigen::Vector3d(k.across, 0, k.along), speed_of_light, omega) +
-            magnetized_response(plasma, k, omega))
-        .determinant();
+    return magnetized_waves(plasma, k, speed_of_light, omega).determinant();
+}
+
+/// E of the wave with a root omega of D, of length 1: across all rows of the matrix.
+inline Eigen::Vector3cd magnetized_E(const std::vector<MagnetizedSpecies>& plasma, MagnetizedWave k,
+                                     double speed_of_light, std::complex<double> omega) {
+    const Eigen::Matrix3cd M = magnetized_waves(plasma, k, speed_of_light, omega);
+    Eigen::Vector3cd E(0, 0, 0);
+    for (long a = 0; a < 3; ++a) {
+        const Eigen::Vector3cd row = M.row(a), next = M.row((a + 1) % 3);
+        // Eigen's cross() of complex vectors conjugates in some releases.
+        const Eigen::Vector3cd across(row[1] * next[2] - row[2] * next[1],
+                                      row[2] * next[0] - row[0] * next[2],
+                                      row[0] * next[1] - row[1] * next[0]);
+        if (across.norm() > E.norm()) E = across;
+    }
+    return E.normalized();
 }
 
 /// The axes of the frame of the uniform field of a case: across it with k, across both, and along it.

@@ -495,7 +495,21 @@ void refuse_magnetized(const Case& w, const std::string& name) {
     }
     refuse_current(w, wave);
     refuse_without_near(w, wave);
-    expect_magnetized(w);
+    const common::DispersionRoot root = expect_magnetized(w).without_mesh;
+    if (!root.found) return;
+    const WaveVector k = wave_vector(w);
+    const Eigen::Matrix3d axes = frame_of_field(w, k);
+    const Eigen::Vector3cd E = axes * magnetized_E(magnetized_species(w), magnetized_wave(w, k), c,
+                                                   root.omega),
+                           curl(-k.z * E[1], k.z * E[0] - k.x * E[2], k.x * E[1]),
+                           field =
+                               w.component.front() == 'E' ? E : Eigen::Vector3cd(curl / k.size());
+    long largest = 0;
+    E.cwiseAbs().maxCoeff(&largest);
+    refuse(std::abs(field[w.component.back() - 'x']) < 1e-6 * E.norm(), wave,
+           " finds a wave of frequency ", std::abs(root.omega.real()), ", which has no ",
+           w.component, ": choose E_", std::string(1, "xyz"[largest]),
+           " for theory.component, or change theory.near");
 }
 void refuse_longitudinal(const Case& w, const std::string& name) {
     refuse_kinetic(w, name);
