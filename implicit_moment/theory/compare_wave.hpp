@@ -86,6 +86,11 @@ inline std::string likely_cause(const Case& w, const Theory& theory, bool grows,
                     ? std::string("; or lower time.dt, which changes it")
                     : "") +
                near_c;
+    if (!w.leapfrog.chosen && theory.of_scheme && !w.field.uses_mass_matrix() &&
+        w.field.smoothing.passes > 0 &&
+        (w.boundary_x == "reflecting" || w.boundary_z == "reflecting"))
+        return "what moments predict is smoothed with what is behind walls that reflect, and damps "
+               "less: set field.response = \"mass_matrix\", or take \"wall\" for the boundary";
     const double swing = swing_in_cells(w, std::abs(theory.omega));
     if (theory.of_scheme && w.wave != "light" && has_linear_splines(w) && swing > 0.01)
         return "particles swing by " + format(swing) +
