@@ -335,6 +335,66 @@ TEST_CASE("momentum across a uniform field is kept together with that of the fie
     CHECK(value(run("across_braked", across + "field.B_level=start"), "momentum_change") >= 0.05);
 }
 
+TEST_CASE("a drift slower than heat is judged where it stands out of noise" *
+          doctest::description("physics")) {
+    // A warm plasma on a mesh of 12 Debye lengths. Each row has what brakes it, the cure that the hint names, and
+    // that cure.
+    const std::string warm =
+                          "implicit_moment/cases/plasma_at_rest.toml plasma.loading=quiet "
+                          "grid.length_x=4 grid.length_z=2 time.dt=0.5 ",
+                      coarse = " grid.cells_z=8", moments = " field.response=moments" + coarse,
+                      ions = " species.ions.drift_", electrons = " species.electrons.drift_";
+    struct Row {
+        std::string plasma, wrong, says, cure;
+    };
+    for (const Row& row :
+         {Row{"uniform.B_x=0 uniform.B_y=0.3 time.end=2000" + ions + "x=0.005" + electrons +
+                  "x=0.005",
+              moments, "0.08 cells: refine the mesh",
+              " field.response=moments grid.cells_x=32 grid.cells_z=16"},
+          {"uniform.B_x=0.3 uniform.B_y=0 grid.boundary_z=reflecting time.end=200" + ions +
+               "y=0.01",
+           moments,
+           "set field.response = \"mass_matrix\"; and smoothing mixes in what is behind walls that "
+           "reflect: set field.smoothing_passes = 0",
+           coarse + " field.smoothing_passes=0"},
+          {"uniform.B_x=0.3 uniform.B_y=0 grid.boundary_z=wall time.end=200" + ions + "x=0.01" +
+               electrons + "x=0.01",
+           moments + " uniform.particles_per_cell=36",
+           "what moments predict beside walls takes momentum across B: set field.response = "
+           "\"mass_matrix\"",
+           coarse}}) {
+        CAPTURE(row.plasma);
+        const Json lost = run("lost", warm + row.plasma + row.wrong)["results"],
+                   momentum = lost["momentum_change"];
+        CHECK(momentum["verdict"] == "FAIL");
+        CHECK(momentum["hint"].get<std::string>().ends_with(row.says));
+        CHECK(lost["energy_drift"]["verdict"] == "PASS");
+        CHECK(value(run("kept", warm + row.plasma + row.cure), "momentum_change") <= 0.05);
+    }
+    // Noise alone is no drift.
+    CHECK(!run("noise",
+               warm + "time.end=20" + coarse + ions + "x=0.001" + electrons + "x=0.001")["results"]
+               .contains("momentum_change"));
+}
+
+TEST_CASE("drifts that theory does not know are not measured" * doctest::description("physics")) {
+    const std::string drift = "implicit_moment/cases/e_cross_b.toml uniform.particles_per_cell=16 ";
+    const auto verdict = [&](const std::string& options, const std::string& name) {
+        return run("unknown", drift + options)["results"][name]["verdict"];
+    };
+    // A fixed background cannot drift, and the currents stop the mean drift of the rest.
+    CHECK(verdict("species.electrons.charge=-2", "drift_over_E_cross_B") == "NOT MEASURED");
+    CHECK(verdict("species.electrons.density=2", "drift_over_E_cross_B") == "NOT MEASURED");
+    std::string hot = "particles.relativistic=true";
+    for (const char* axis : {"x", "y", "z"})
+        hot += std::string(" species.electrons.temperature_") + axis +
+               "=1e-3 species.ions.temperature_" + axis + "=1e-3";
+    CHECK(verdict(hot, "mean_E_error") == "NOT MEASURED");
+    CHECK(verdict(hot, "drift_over_E_cross_B") == "NOT MEASURED");
+    CHECK(verdict("particles.relativistic=true", "mean_E_error") == "PASS");
+}
+
 TEST_CASE("damping that theory does not have is a result that falls short" *
           doctest::description("physics")) {
     // Electron Bernstein waves, which nothing damps.
