@@ -410,6 +410,22 @@ TEST_CASE("damping that theory does not have is a result that falls short" *
     CHECK(damped["results"]["damping"].dump().find("set field.theta = 0.5") != std::string::npos);
 }
 
+TEST_CASE("damping beside walls that reflect falls short and the cures of its hint hold" *
+          doctest::description("physics")) {
+    const std::string light =
+        "implicit_moment/cases/e_cross_b.toml uniform.B_y=0 uniform.E_x=0 "
+        "uniform.particles_per_cell=64 grid.cells_x=32 grid.length_x=6.283185307179586 time.dt=0.2 "
+        "time.end=120 species.electrons.mass=0.1 species.electrons.wave_y=1e-3 "
+        "species.electrons.phase_y=90 uniform.mode_x=3 theory.wave=cold theory.component=E_y "
+        "theory.near=3.5 grid.boundary_x=";
+    const Json short_of = run("short", light + "reflecting")["results"]["damping_over_theory"];
+    CHECK(short_of["verdict"] == "FAIL");
+    CHECK(short_of["hint"].get<std::string>().ends_with(
+        "set field.response = \"mass_matrix\", or take \"wall\" for the boundary"));
+    check_results(run("matrix", light + "reflecting field.response=mass_matrix"), 5);
+    check_results(run("wall", light + "wall"), 3);
+}
+
 TEST_CASE("what a step takes of all waves of a seed is as the linear step has it" *
           doctest::description("physics")) {
     // The seed excites a slow wave, which is followed, and fast ones, which moments damp more.
