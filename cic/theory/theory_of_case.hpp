@@ -185,7 +185,34 @@ struct Theory {
     bool mirrored = false;  // -conj(omega) is a root as well, of the wave that goes the other way
     std::vector<double> others;       // frequencies of other undamped waves, where they are known
     std::complex<double> hidden = 0;  // a root that decays hardly faster than a damped one; 0: none
+    std::complex<double> in_plasma = 0;  // omega where the plasma of the wave has no drift
+
+    /// What errors are measured by: drifts of the whole plasma change a frequency, and nothing else.
+    double scale(double frequency) const {
+        return std::min(std::fabs(frequency), std::abs(in_plasma));
+    }
 };
+
+/// omega - k u of the species that respond to the wave, chi a tenth of the largest or more: the
+/// largest, so that one which drifts with the wave leaves that of the others.
+inline std::complex<double> frequency_in_plasma(const Case& parameters, const WaveVector& k,
+                                                std::complex<double> omega,
+                                                const std::vector<SpeciesResponse>& responses) {
+    std::vector<std::pair<double, std::complex<double>>> found;
+    double most = 0;
+    for (const SpeciesCase& s : parameters.species) {
+        if (!s.mobile()) continue;
+        const Distribution &x = s.tables.v[0], &z = s.tables.v[2];
+        const double ku = k.x * (s.drift_x + (x.given() ? x.mean() : 0)) +
+                          k.z * (s.drift_z + (z.given() ? z.mean() : 0));
+        found.push_back({std::abs(responses[found.size()].chi(omega)), omega - ku});
+        most = std::max(most, found.back().first);
+    }
+    std::complex<double> largest = 0;
+    for (const auto& [chi, moved] : found)
+        if (!(chi < 0.1 * most) && std::abs(moved) > std::abs(largest)) largest = moved;
+    return largest;
+}
 
 /// The part of the seeded field that belongs to one root of D: the residue of the initial-value
 /// problem.
@@ -412,7 +439,11 @@ inline Theory theory_of_wave(const Case& parameters, long mode_x, long mode_z,
     const std::complex<double> mirror = -std::conj(theory.omega);
     const common::DispersionRoot other = common::root_near(D, mirror);
     theory.mirrored = other.found && std::abs(other.omega - mirror) < 1e-6 * std::abs(mirror);
-    if (!parameters.magnetized() && theory.omega.imag() < -1e-3 * std::abs(theory.omega))
+    theory.in_plasma = theory.mirrored
+                           ? theory.omega
+                           : frequency_in_plasma(parameters, k, theory.omega, responses);
+    if (!parameters.magnetized() &&
+        theory.omega.imag() < -1e-3 * theory.scale(std::abs(theory.omega)))
         theory.hidden = decays_hardly_faster(all_roots(D, guesses), theory.omega);
     if (!on_mesh) refuse_resonance(parameters, k, theory, responses);
     if (!on_mesh) theory.seed = seeded_field(parameters, theory, responses, D);

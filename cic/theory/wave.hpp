@@ -82,11 +82,11 @@ inline void refuse_wave(const Case& parameters, const std::string& what, long mo
            " with a magnetic field is for gauss.sign = 1");
 }
 
-/// What a wave that theory does not damp loses: at most 2e-3 of omega, per time.
-inline void judge_undamped(const common::MeasuredMode& seen, double growth,
+/// What a wave that theory does not damp loses: at most 2e-3 of omega, in: scale, per time.
+inline void judge_undamped(const common::MeasuredMode& seen, double growth, double scale,
                            const std::string& where, Summary& summary) {
     summary.result("damping", {-seen.growth(), seen.growth_error()}, omega_p_unit, 0 - growth,
-                   2e-3 * seen.frequency(), where);
+                   2e-3 * scale, where);
 }
 
 /// The record of a run beside the wave of theory, and what was measured of it.
@@ -130,13 +130,19 @@ inline WaveRecord measure_wave(const Case& parameters, const History& history) {
     WaveRecord w;
     w.theory = theory_of_wave(parameters);
     w.times = history.column("time");
-    const std::vector<std::complex<double>> mode = history.complex_column("mode");
+    std::vector<std::complex<double>> mode = history.complex_column("mode");
     for (const std::complex<double> E_k : mode) w.amplitude.push_back(std::abs(E_k));
+    // A plasma that drifts fast is followed: its wave has fewer periods there.
+    const double shift = std::abs(w.theory.in_plasma) < w.frequency()
+                             ? (w.theory.omega - w.theory.in_plasma).real()
+                             : 0;
+    for (std::size_t n = 0; n < mode.size() && shift != 0; ++n)
+        mode[n] *= std::polar(1.0, shift * w.times[n]);
     w.largest_at_start = *std::max_element(
         w.amplitude.begin(),
         w.amplitude.begin() + static_cast<std::ptrdiff_t>(1 + w.amplitude.size() / 10));
     const double growth = w.growth(), end = w.times.back();
-    w.grows = growth > 1e-3 * std::abs(w.theory.omega) || growth * end > 3;
+    w.grows = growth > 1e-3 * w.theory.scale(std::abs(w.theory.omega)) || growth * end > 3;
     w.seeded = is_seeded(parameters, w.theory);
     w.onset = predicted_onset(parameters, w.theory);
     w.level = onset_field(parameters, w.theory);
@@ -153,14 +159,22 @@ inline WaveRecord measure_wave(const Case& parameters, const History& history) {
                              " at omega = ", fastest.real(),
                              ", and covers this one: take theory.near = ", fastest.real());
 
-    w.search.expected = {w.theory.omega};
+    const double begins = std::max(seed, w.amplitude.front());
+    if (!w.grows && w.covered.empty() && w.later_noise > begins && w.largest_at_start > 2 * begins)
+        w.covered = sentence("noise covers the perturbation: particles come to ",
+                             w.largest_at_start, " in a tenth of the record, and the seed is ",
+                             seed, ": raise the amplitude or particles_per_cell");
+
+    w.search.expected = {w.theory.omega - shift};
     if (w.theory.mirrored) w.search.expected.push_back(-std::conj(w.theory.omega));
     const std::string bouncing = likely_bouncing(parameters, w.theory, field);
     if (!bouncing.empty()) w.search.faded = bouncing;
-    w.search.begin = w.grows ? 1 / growth : 2 * pi / w.frequency();
+    w.search.begin = w.grows ? 1 / growth : 2 * pi / w.theory.scale(w.frequency());
     w.search.below_maximum = 0.1;
     if (w.onset > w.search.begin) w.search.end = w.onset;
     if (w.grows || w.swings()) w.seen = common::measure_mode(w.times, mode, w.search);
+    w.seen.omega += shift;
+    if (shift != 0) w.seen.window += sentence(", Doppler shift ", shift, " taken off");
     // Of a wave that decays, noise that rings as it does moves the phase: no fit can tell it apart.
     if (!w.grows && seed > 0) {
         const double moved =
@@ -209,7 +223,8 @@ inline void doubt_wave(const Case& parameters, WaveRecord& w) {
     // Far from the frequency of theory, and growing no faster, is another wave, or noise.
     const bool elsewhere =
         seen.found && !too_fast &&
-        std::fabs(w.frequency_off()) > 0.3 * std::abs(w.theory.omega) + seen.frequency_error();
+        std::fabs(w.frequency_off()) >
+            0.3 * w.theory.scale(std::abs(w.theory.omega)) + seen.frequency_error();
     // What begins above the onset has saturated before it can be measured, or noise has covered it.
     const bool too_high = std::max(w.noise, w.amplitude.front()) > w.level || w.in_noise;
     if (w.grows && too_high && (!w.grows_right || (elsewhere && seen.growth_error() > w.growth())))
@@ -243,12 +258,16 @@ inline void judge_number(const WaveRecord& w, const std::string& name, double va
 inline void judge_frequency(const Case& parameters, const WaveRecord& w, Summary& summary) {
     const common::MeasuredMode& seen = w.seen;
     const double expected = w.theory.mirrored ? w.frequency() : w.theory.omega.real(),
-                 deviation = w.frequency_off() / expected;
+                 scale = w.theory.scale(expected),
+                 deviation = std::copysign(w.frequency_off(),
+                                           w.frequency_off() * w.theory.in_plasma.real()) /
+                             scale,
+                 tolerance = parameters.frequency_tolerance * scale / w.frequency();
     if (seen.found && w.told.empty() && w.covered.empty() &&
-        deviation < -parameters.frequency_tolerance - seen.frequency_error() / w.frequency())
+        deviation < -parameters.frequency_tolerance - seen.frequency_error() / scale)
         summary.hint(likely_cause(parameters, w.theory, w.start, deviation));
     judge_number(w, "omega_over_theory", w.theory.mirrored ? seen.frequency() : seen.omega.real(),
-                 seen.frequency_error(), expected, parameters.frequency_tolerance, summary);
+                 seen.frequency_error(), expected, tolerance, summary);
     summary.hint(w.cause);
 }
 
@@ -312,7 +331,7 @@ inline void judge_largest(const Case& parameters, const WaveRecord& w, Summary& 
 
 /// What does not grow: that it does not, its frequency, and its damping or that it has none.
 inline void judge_lasting_wave(const Case& parameters, const WaveRecord& w, Summary& summary) {
-    const bool damped = w.growth() < -1e-3 * w.frequency();
+    const bool damped = w.growth() < -1e-3 * w.theory.scale(w.frequency());
     if (!w.seeded) {
         for (const char* name : {"largest_over_start", "omega_over_theory", "damping_over_theory"})
             if (damped || name[0] != 'd')
@@ -334,7 +353,7 @@ inline void judge_lasting_wave(const Case& parameters, const WaveRecord& w, Summ
         judge_number(w, "damping_over_theory", w.seen.growth(), w.seen.growth_error(), w.growth(),
                      parameters.growth_tolerance, summary);
     else if (w.seen.found)
-        judge_undamped(w.seen, w.growth(), w.where(), summary);
+        judge_undamped(w.seen, w.growth(), w.theory.scale(w.seen.frequency()), w.where(), summary);
 }
 
 /// A wave or an instability against the dispersion relation: frequency, growth or damping, and of

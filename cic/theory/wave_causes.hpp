@@ -67,7 +67,7 @@ inline bool is_seeded(const Case& parameters, const Theory& theory) {
 inline std::string likely_bouncing(const Case& parameters, const Theory& theory, double field) {
     const double bounce = bounce_frequency(parameters, theory, field),
                  rate = std::fabs(theory.omega.imag());
-    if (!(bounce > rate && rate > 1e-3 * std::abs(theory.omega))) return "";
+    if (!(bounce > rate && rate > 1e-3 * theory.scale(std::abs(theory.omega)))) return "";
     return sentence("particles bounce in the wave with ", bounce, ", faster than the rate ", rate,
                     ", and linear theory does not hold: lower the amplitude to ",
                     format(rate * rate / (bounce * bounce)), " of it");
@@ -130,7 +130,7 @@ inline std::string likely_driven_by_mesh(const Case& parameters) {
 /// By how much the leapfrog changes a wave, relative: (omega dt)^2/24, where it grows with the frequency of
 /// the plasma, and (Omega dt)^2/12 of a gyration.
 inline double change_by_leapfrog(const Case& parameters, const Theory& theory) {
-    double omega2 = std::norm(theory.omega), gyration = 0;
+    double omega2 = std::norm(theory.in_plasma), gyration = 0;
     for (const SpeciesCase& s : parameters.species) {
         if (!s.mobile()) continue;
         if (theory.omega.imag() > 0)
@@ -189,7 +189,12 @@ inline std::string begins_in_noise(double noise, double seed) {
 inline std::string likely_cause(const Case& parameters, const Theory& theory,
                                 const WaveStart& start, double deviation = 0) {
     const double field = start.field, noise = start.noise;
-    const double by_step = change_by_leapfrog(parameters, theory),
+    // Beside the frequency that is judged, which a drift can make lower than that of the plasma.
+    const double beside =
+                     theory.omega.imag() <= 0 && theory.omega.real() != 0
+                         ? std::fabs(theory.in_plasma.real()) / theory.scale(theory.omega.real())
+                         : 1,
+                 by_step = beside * change_by_leapfrog(parameters, theory),
                  k_dx =
                      wave_vector(parameters, theory.mode_x, 0).size() * parameters.grid.x.spacing(),
                  k_dz =
@@ -201,10 +206,19 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory,
                             (parameters.mode_x != 0 || parameters.mode_z != 0);
     const double tolerance = theory.omega.real() == 0 ? parameters.growth_tolerance
                                                       : parameters.frequency_tolerance,
-                 theta = std::max(k_dx, k_dz), slower = 2 - std::cos(k_dx / 2) - std::cos(k_dz / 2);
-    const bool conserving = parameters.scheme().energy_conserving,
-               by_mesh =
-                   parameters.model != "mesh" && !conserving && (theta > 0.5 || slower > tolerance);
+                 theta = std::max(k_dx, k_dz);
+    const bool conserving = parameters.scheme().energy_conserving;
+    // cos(k dx/2), or of the energy-conserving mesh sinc(k dx/2)^order
+    const auto part = [&](double k_d) {
+        return !conserving ? std::cos(k_d / 2)
+               : k_d > 0   ? std::pow(std::sin(k_d / 2) / (k_d / 2), parameters.scheme().order)
+                           : 1;
+    };
+    const double slower = beside * (2 - part(k_dx) - part(k_dz));
+    const bool by_mesh =
+        parameters.model != "mesh" &&
+        (conserving ? slower > tolerance && (deviation < 0 || theory.omega.imag() > 0)
+                    : theta > 0.5 || slower > tolerance);
     const std::string driven = likely_driven_by_mesh(parameters),
                       also = driven.empty() ? "" : "; and " + driven;
     const char* exact = takes_mesh ? ", or take theory.model = \"mesh\"" : "";
@@ -225,9 +239,14 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory,
     }
     if (by_mesh)
         return sentence(k_dx > k_dz ? "k dx is " : "k dz is ", theta,
-                        ", and the mesh changes the wave by 1 - cos(k dx/2)",
-                        k_dx > 0 && k_dz > 0 ? " of both directions = " : " = ", slower,
-                        " or so: raise ",
+                        ", and the mesh changes the wave by ",
+                        beside > 1.01 ? ""
+                        : conserving  ? "1 - sinc(k dx/2)^order"
+                                      : "1 - cos(k dx/2)",
+                        beside > 1.01          ? ""
+                        : k_dx > 0 && k_dz > 0 ? " of both directions = "
+                                               : " = ",
+                        slower, " or so: raise ",
                         k_dx > 0 && k_dz > 0 ? "grid.cells_x and cells_z"
                         : k_dx > k_dz        ? "grid.cells_x"
                                              : "grid.cells_z",
