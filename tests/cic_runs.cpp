@@ -757,6 +757,18 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
     // 8 (T_e / n_P e^2)^1/2 of the plasma, n_P = 0.1353 / 0.579.
     says(said("cic/cases/sheath.toml", "grid.length_x=6 grid.cells_x=24 time.end=1000"),
          "raise grid.length_x, 6, above 8 Debye lengths of the plasma, 16.55");
+    // Whatever else, it has not settled.
+    says(said("cic/cases/sheath.toml", "grid.length_x=12 grid.cells_x=24 time.end=30"),
+         "; the sheath has not settled: ions cross the box in L (m_i/T_e)^1/2 = ");
+    // What a source emits and no wall takes, and with a wall that takes it.
+    const std::string diode = case_file(
+        "[grid]\ncells_x = 16\nlength_x = 1\nboundary_x = \"wall\"\n[time]\ndt = 0.02\n"
+        "end = 10\n[boundary]\npotential_x_high = -20\nparticles_x_low = \"source\"\n"
+        "[species.e]\ndensity = 0.01\nemission = 1\nemission_temperature = 0.01\n"
+        "particles_per_cell = 1\n");
+    says(said(diode, ""),
+         "warning: e: of 1.6e+04 particles from the source 1.6e+04 are in the box");
+    CHECK(said(diode, "boundary.potential_x_high=20").empty());
     const std::string landau = said("cic/cases/landau.toml",
                                     "species.electrons.particles_per_cell=256 "
                                     "species.electrons.amplitude=1e-3");

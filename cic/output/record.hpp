@@ -78,6 +78,7 @@ class Recorder {
         judge_energy(history, summary);
         judge_momentum(parameters_, least_energy_, history, summary);
         judge_rest(parameters_, history, summary);
+        warn_of_pile_up(state, history.column("time").back(), summary);
         summary.conservation("largest_energy_drift", history.largest("energy_drift"), "1");
         summary.conservation("largest_charge_error", history.largest("charge_error"), "1");
         const auto p_x = history.column("momentum_x");
@@ -147,6 +148,28 @@ class Recorder {
         if (scale > least_energy_)
             summary.result_at_most("energy_change", change / scale, "", limit,
                                    "energy is conserved, but for the mesh and the step");
+    }
+
+    // Where particles of a source stay in the box, however often they come back to it.
+    void warn_of_pile_up(const State& state, double end, common::Summary& summary) const {
+        std::size_t mobile = 0;
+        for (const SpeciesCase& s : parameters_.species) {
+            if (!s.mobile()) continue;
+            const std::size_t k = mobile++;
+            const double weight = state.species[k].m_p / s.mass,
+                         emitted = emitted_per_step(parameters_, s, weight) * end / parameters_.dt,
+                         first = double(particle_count(parameters_, s)),
+                         now = double(state.species[k].count_of_all()),
+                         again = double(state.emitted_again[k]);
+            if (!(emitted > std::max(first, 100.0) && now - first > 0.9 * emitted &&
+                  again > emitted))
+                continue;
+            summary.late_warnings.push_back(sentence(
+                s.name, ": of ", emitted, " particles from the source ", now - first,
+                " are in the box, and it has sent them back ", again,
+                " times: they pile up without end; let them reach a wall that absorbs, by its "
+                "potential, particles_x_high or a weaker field B across, or lower the emission"));
+        }
     }
 
     struct Energies {

@@ -186,15 +186,15 @@ inline void compare_sheath(const Case& parameters, const History& history, Summa
         omega_dt > 0.5 || cells > 2
             ? sentence("the step is long: omega_p dt of the electrons is ", omega_dt,
                        ", and thermal ones cross ", cells, " cells in it: lower time.dt")
-        : parameters.grid.x.length < least
-            ? sentence("the sheaths of both walls overlap: raise grid.length_x, ",
-                       parameters.grid.x.length, ", above 8 Debye lengths of the plasma, ", least)
         : parameters.end < settled
             ? sentence(
                   "the sheath has not settled: ions cross the box in L (m_i/T_e)^1/2 = ", crossing,
                   ", and potentials come to rest in three such times or more: "
                   "raise time.end, ",
                   parameters.end, ", above ", settled)
+        : parameters.grid.x.length < least
+            ? sentence("the sheaths of both walls overlap: raise grid.length_x, ",
+                       parameters.grid.x.length, ", above 8 Debye lengths of the plasma, ", least)
             : "the noise of particles and the Debye length are the most likely causes: raise "
               "particles_per_cell, grid.cells_x or time.end");
     const auto compare = [&](const char* name, const char* column, double expected) {
