@@ -769,6 +769,24 @@ TEST_CASE("what falls short names what cures it" * doctest::description("physics
     says(said(diode, ""),
          "warning: e: of 1.6e+04 particles from the source 1.6e+04 are in the box");
     CHECK(said(diode, "boundary.potential_x_high=20").empty());
+    // Heat of the step, which no mesh cures, and of reflection from walls with a field.
+    const std::string rest =
+        "[grid]\ncells_x = 64\nlength_x = 16\n[time]\ndt = 1.5\nend = 600\n[species.e]\n"
+        "temperature_x = 1\nparticles_per_cell = 64\n[species.i]\ncharge = 1\n"
+        "motion = \"fixed\"\n";
+    const std::string hot = said(case_file(rest), "");
+    says(hot, "neither heats nor cools); omega_p dt is 1.5, and the leapfrog heats what swings");
+    CHECK(said(case_file(rest), "time.dt=0.4").empty());
+    const std::string walls =
+        " grid.boundary_x=wall boundary.particles_x_low=reflect "
+        "boundary.particles_x_high=reflect boundary.potential_x_high=8 "
+        "time.end=100";
+    says(said(case_file(rest), "time.dt=0.05" + walls),
+         "; walls that have a field reflect particles to first order in the step: lower time.dt");
+    CHECK(said(case_file(rest), "time.dt=0.0125" + walls).empty());
+    // Of 128 cells along x eight are left.
+    says(said("cic/cases/diocotron.toml", "grid.cells_x=8 theory.growth_tolerance=0.01"),
+         "raise grid.cells_x");
     const std::string landau = said("cic/cases/landau.toml",
                                     "species.electrons.particles_per_cell=256 "
                                     "species.electrons.amplitude=1e-3");

@@ -247,7 +247,7 @@ TEST_CASE("what cannot be measured says why") {
     };
     const ModeSearch wave{.expected = both(1.0)};
     CHECK(says(reason(std::vector<Complex>(400, 0.0), 0.1, wave), "the record is zero"));
-    CHECK(says(reason(std::vector<Complex>(400, 3.0), 0.1, wave), "no mode stands out"));
+    CHECK(says(reason(std::vector<Complex>(400, 3.0), 0.1, wave), "stays at rest"));
     CHECK(says(reason(std::vector<Complex>(4, 3.0), 0.1, wave), "fewer than 8 rows"));
     CHECK(says(reason(record_of({"", both(1.0), {1, 1}, 150, 0.1, {}}, 0, 0), 0.1, wave),
                " e-foldings, below 3 and 3, "));

@@ -13,7 +13,17 @@ TEST_CASE("what may mislead in cic is a warning with the number and the limit" *
 cic line -> no warning
 cic line time.dt=1
     warning: omega_p dt = 1 is above 0.5: frequencies are 4.72 % too high; at 2 the leapfrog
-    blows up, with a temperature from 1.6 on
+    blows up, and from 0.8 or so on it heats a warm plasma without end
+cic line time.dt=1 plasma.B_y=0.5
+    warning: omega_p dt = 1 is above 0.5: frequencies along B are 4.72 % too high
+cic line wave time.end=10 species.electrons.amplitude=0.6
+    warning: electrons: a cold standing wave of the amplitude 0.6, above 0.5, breaks within half a
+    period, when its particles overtake each other: lower it
+cic line wave time.end=10 species.electrons.amplitude=0.5 -> no warning
+# Along B to the digits that are given.
+cic line wave time.end=10 species.electrons.amplitude=0.01 plasma.B_x=3 plasma.B_z=1 \
+    species.electrons.drift_x=0.03 species.electrons.drift_z=0.01000000001
+    no warning
 cic line species.electrons.density='1+cos(2*pi*x/6)' time.dt=0.4
     warning: omega_p dt = 0.5621 where the plasma is densest is above 0.5
 cic line species.electrons.temperature_x=0.01

@@ -90,6 +90,17 @@ inline bool is_at_rest(const Case& parameters) {
     return true;
 }
 
+/// Where the leapfrog heats plasma whose Debye length the mesh resolves: that, and what to change.
+inline std::string heats_in_step(const Case& parameters) {
+    const Scales scales = scales_of(parameters);
+    const double omega_dt = scales.largest_omega_p * parameters.dt,
+                 dx = std::max(parameters.grid.x.spacing(),
+                               parameters.dimensions == 2 ? parameters.grid.z.spacing() : 0.0);
+    if (!(omega_dt > 0.5) || pi * scales.least_debye_length < dx) return "";
+    return sentence("omega_p dt is ", omega_dt,
+                    ", and the leapfrog heats what swings within a step: lower time.dt");
+}
+
 /// What a plasma at rest has of the energy of each species at the end, without a common drift. Energy as
 /// a whole does not tell what species exchange, nor what they take from the noise of a random start.
 inline void judge_rest(const Case& parameters, const History& history, Summary& summary) {
@@ -117,8 +128,10 @@ inline void judge_rest(const Case& parameters, const History& history, Summary& 
         for (std::size_t n = 0; n < kinetic.size(); ++n)
             kinetic[n] -= 0.5 * s.mass * s.mean_density() * volume * drift2[n];
         if (scale.thermal_speed == 0 || s.charge == 0 || !(kinetic.front() > 0)) continue;
+        const std::string of_step = heats_in_step(parameters);
         summary.hint(
-            s.loading == "random" && field > 0.1 * kinetic.front()
+            !of_step.empty() ? of_step
+            : s.loading == "random" && field > 0.1 * kinetic.front()
                 ? sentence("a random start has more noise than equilibrium, its field ",
                            field / kinetic.front(),
                            " of this energy, and gives it to particles: "

@@ -127,15 +127,24 @@ class Recorder {
         const double scale = own > 1e-3 * largest ? own : largest;
         const Scheme scheme = parameters_.scheme();
         const bool conserving = scheme.energy_conserving;
-        summary.hint(sentence(
-            "the mesh heats what it does not resolve, few particles are noise, and the "
-            "leapfrog heats what swings within a step: raise grid.cells_x or "
-            "particles_per_cell, ",
-            conserving && scheme.order == 2 ? ""
-            : conserving                    ? "take method.weighting = \"tsc\", "
-            : scheme.order == 2             ? "take method.scheme = \"energy\", "
-                                : "take method.scheme = \"energy\" or method.weighting = \"tsc\", ",
-            "or lower time.dt"));
+        std::string of_step = heats_in_step(parameters_);
+        if (of_step.empty() && biased)
+            of_step =
+                "walls that have a field reflect particles to first order in the step: "
+                "lower time.dt";
+        summary.hint(
+            !of_step.empty()
+                ? of_step
+                : sentence(
+                      "the mesh heats what it does not resolve, few particles are noise, and the "
+                      "leapfrog heats what swings within a step: raise grid.cells_x or "
+                      "particles_per_cell, ",
+                      conserving && scheme.order == 2 ? ""
+                      : conserving                    ? "take method.weighting = \"tsc\", "
+                      : scheme.order == 2
+                          ? "take method.scheme = \"energy\", "
+                          : "take method.scheme = \"energy\" or method.weighting = \"tsc\", ",
+                      "or lower time.dt"));
         // Of the field of a wave on nodes the momentum scheme turns cos^2(k dx/2) into motion.
         double limit = 0.05;
         if (!conserving && comparison_.follows_mode) {

@@ -260,9 +260,11 @@ inline std::vector<std::string> resolution_warnings(const Case& parameters, cons
                                                  : grid.x.spacing();
     const double omega_dt = scales.largest_omega_p * parameters.dt;
     if (omega_dt > 0.5 && parameters.gauss_sign > 0)
-        warn("omega_p dt = ", omega_dt, where_densest(scales), " is above 0.5: frequencies are ",
+        warn("omega_p dt = ", omega_dt, where_densest(scales), " is above 0.5: frequencies ",
+             parameters.magnetized() ? "along B " : "", "are ",
              100 * (2 / omega_dt * std::asin(0.5 * omega_dt) - 1),
-             " % too high; at 2 the leapfrog blows up, with a temperature from 1.6 on");
+             " % too high; at 2 the leapfrog blows up, and from 0.8 or so on it heats a warm "
+             "plasma without end");
     detail::warn_of_heating(parameters, scales, dx, warnings);
     detail::warn_of_space_charge(parameters, warnings);
     if (const std::string driven = likely_driven_by_mesh(parameters); !driven.empty())

@@ -68,9 +68,15 @@ inline void compare_diocotron(const Case& parameters, const History& history, Su
     const std::string where =
         "guiding centers, two edges between grounded walls; measured " + seen.window;
     summary.result_info("theory_growth", growth, omega_p_unit, where);
-    summary.hint(
-        "inertia changes the drift where omega_p is not far below Omega_c, and so does a coarse "
-        "layer: lower the density, or raise grid.cells_z");
+    const double k_dx =
+        wave_vector(parameters, parameters.mode_x, 0).size() * parameters.grid.x.spacing();
+    summary.hint(0.125 * k_dx * k_dx > 0.5 * parameters.growth_tolerance
+                     ? sentence("k dx is ", k_dx,
+                                ", and the mesh changes the wave by 1 - cos(k dx/2) = ",
+                                1 - std::cos(0.5 * k_dx), " or more: raise grid.cells_x")
+                     : "inertia changes the drift where omega_p is not far below Omega_c, and so "
+                       "does a coarse "
+                       "layer: lower the density, or raise grid.cells_z");
     if (!seen.found) return summary.not_measured("growth_over_theory", seen.reason);
     summary.result_info("growth", {seen.growth(), seen.growth_error()}, omega_p_unit, where);
     summary.result("growth_over_theory", {seen.growth() / growth, seen.growth_error() / growth}, "",

@@ -32,7 +32,7 @@ inline void refuse_magnetized(const Case& parameters, const SpeciesCase& s, cons
            s.name, "' has temperature_x = ", T[0], ", y: ", T[1], ", z: ", T[2]);
     refuse(std::hypot(u[1] * B[2] - u[2] * B[1], u[2] * B[0] - u[0] * B[2],
                       u[0] * B[1] - u[1] * B[0]) >
-               1e-12 * std::hypot(u[0], u[1], u[2]) * parameters.B.size(),
+               1e-6 * std::hypot(u[0], u[1], u[2]) * parameters.B.size(),
            what, " with a magnetic field is for drifts along it, and '", s.name,
            "' drifts across: it would gyrate as a whole; take out that drift, or set "
            "theory.compare = \"none\" and waves to \"standing\"");
@@ -160,7 +160,7 @@ inline WaveRecord measure_wave(const Case& parameters, const History& history) {
                              ", and covers this one: take theory.near = ", fastest.real());
 
     const double begins = std::max(seed, w.amplitude.front());
-    if (!w.grows && w.covered.empty() && w.later_noise > begins && w.largest_at_start > 2 * begins)
+    if (!w.grows && w.covered.empty() && w.later_noise > begins && w.largest_at_start > 5 * begins)
         w.covered = sentence("noise covers the perturbation: particles come to ",
                              w.largest_at_start, " in a tenth of the record, and the seed is ",
                              seed, ": raise the amplitude or particles_per_cell");
@@ -190,6 +190,9 @@ inline WaveRecord measure_wave(const Case& parameters, const History& history) {
     const double own = std::max(w.amplitude.front(), std::exp(1.0) * w.theory.seed);
     w.noisy = w.grows && w.later_noise > 0 && w.early > 1.05 * own;
     w.start = {field, w.noise, w.noisy && w.early > 2 * own ? w.early : 0};
+    if (!w.grows && w.seen.found && w.later_noise > 0.1 * field &&
+        w.seen.frequency_error() > parameters.frequency_tolerance * w.theory.scale(w.frequency()))
+        w.start.blurs = w.later_noise / field;
     if (!w.grows) w.told = other_wave(parameters, w.theory, w.seen);
     w.cause = !w.told.empty()      ? w.told
               : !w.covered.empty() ? w.covered
@@ -424,6 +427,15 @@ inline constexpr Comparison wave_comparison{
                          "the wave of theory has the period ", period,
                          ", longer than time.end = ", parameters.end,
                          ": its frequency cannot be measured well");
+            for (const SpeciesCase& s : parameters.species)
+                for (const PerturbationCase& p : perturbations_of(parameters, s))
+                    common::warn(warnings,
+                                 s.mobile() && p.wave == "standing" && p.amplitude > 0.5 &&
+                                     omega.imag() <= 0 &&
+                                     s.temperatures(parameters.axis())[p.mode_x != 0 ? 0 : 2] == 0,
+                                 s.name, ": a cold standing wave of the amplitude ", p.amplitude,
+                                 ", above 0.5, breaks within half a period, when its particles "
+                                 "overtake each other: lower it");
         },
     .add_results = compare_wave};
 

@@ -177,6 +177,7 @@ struct WaveStart {
     double field = 0;        // without noise
     double noise = 0;        // of random numbers
     double later_noise = 0;  // that a quiet start comes to, where it is more than the perturbation
+    double blurs = 0;        // noise over the field, where it makes a frequency uncertain; else 0
 };
 /// That noise starts the wave, and what to change.
 inline std::string begins_in_noise(double noise, double seed) {
@@ -216,7 +217,7 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory,
     };
     const double slower = beside * (2 - part(k_dx) - part(k_dz));
     const bool by_mesh =
-        parameters.model != "mesh" &&
+        parameters.model != "mesh" && (start.blurs == 0 || deviation != 0) &&
         (conserving ? slower > tolerance && (deviation < 0 || theory.omega.imag() > 0)
                     : theta > 0.5 || slower > tolerance);
     const std::string driven = likely_driven_by_mesh(parameters),
@@ -273,6 +274,9 @@ inline std::string likely_cause(const Case& parameters, const Theory& theory,
         return sentence("by the end ", left,
                         " of the wave is left, and what hides it is noise: "
                         "raise the amplitude or particles_per_cell");
+    if (start.blurs > 0)
+        return sentence("the noise of particles comes to ", start.blurs,
+                        " of the seeded field: raise particles_per_cell");
     return "another wave beside it, or too short a record, is the most likely cause: raise "
            "time.end, or particles_per_cell where the start is quiet";
 }

@@ -444,8 +444,8 @@ MeasuredMode measure_mode(std::span<const double> times, std::span<const Complex
     if (list.modes.empty()) return cannot(list.reason);
     const std::vector<Mode> modes = told_apart(list, length, wanted);
     if (modes.empty())
-        return cannot("noise is ", list.noise, " of the record from t = ", result.begin, " to ",
-                      result.end, ", and no mode stands out of it");
+        return cannot(list.noise, " of the record from t = ", result.begin, " to ", result.end,
+                      " is noise or waves not to be told apart, and the rest stays at rest");
     Match match = nearest(modes, search.expected);
     if (search.expected.size() > 1) match = of_both_directions(match, modes, wanted.size);
     result.omega = match.mode.omega, result.error = match.mode.error;
