@@ -205,12 +205,10 @@ inline void constrain_small_mass_nodes(const std::vector<GridRow>& rows,
     constrain_nodes(all, nodes);
 }
 
-/// Holds nodes with less than 1/34 of the mass of their neighbor, as an estimate of what the explicit
+/// Holds nodes with less than 1/64 of the mass of their neighbor, as an estimate of what the explicit
 /// step is too long for: particles that have just crossed a line of nodes move those beyond it with
 /// all their stress, and where these have the mass m_i, the neighbor m,
-///   w = (c/h) (m/m_i)^1/2,  w dt = alpha (m/m_i)^1/2
-/// With alpha of a quarter that is 1.5 at m/34. The limit, 2, is m/64; but a block that rests with friction
-/// trembles before. A sliver of a quarter of a cell has m/32: round-off would decide.
+///   w = (c/h) (m/m_i)^1/2,  w dt = alpha (m/m_i)^1/2 > 2 below (alpha/2)^2 m: m/64 at a quarter
 /// in/out: nodes.sums, nodes.surface, which move along; nodes.ghosts()
 /// note:   Not with smooth shapes, whose gradients vanish where mass does, as those of linear shapes do
 ///         across a corner.
@@ -219,7 +217,7 @@ void hold_small_mass_nodes(const Shape&, const std::vector<Grain>& grains,
                            const std::vector<Bond>& bonds, const GridLayout& layout,
                            GrainNodes& nodes) {
     if constexpr (Shape::width == 2)
-        constrain_small_mass_nodes(grid_rows(grains, nodes, layout), bonds, 1.0 / 34,
+        constrain_small_mass_nodes(grid_rows(grains, nodes, layout), bonds, 1.0 / 64,
                                    Neighbors::along_lines, nodes);
 }
 
